@@ -297,10 +297,21 @@ static void objects_together_are_one_rigid_body(void **state)
     assert_int_equal(scene_scale_objects(s, &all, 0.5, NULL), STATUS_OK);
     assert_at(s, "rod", 1, 0.001 + 0.5 * 2.1, -0.1);
     assert_true(s->solids[scene_find_solid(s, "liquid")].shape.radius == 0.475);
+    const double vessel_radius = s->solids[scene_find_solid(s, "vessel")].shape.radius;
     assert_int_equal(scene_move_objects(s, &(object_list){"vessel", wrong, 1}, vec3_make(1, 0, 0), NULL),
                      STATUS_BAD_INPUT);
     assert_int_equal(scene_move_objects(s, &(object_list){"vessel", missing, 1}, vec3_make(1, 0, 0), NULL),
                      STATUS_BAD_INPUT);
+    const char *last_missing[] = {"rod", "rods"};
+    const object_list broken = {"vessel", last_missing, 2};
+    assert_int_equal(scene_move_objects(s, &broken, vec3_make(1, 0, 0), NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_turn_objects(s, &broken, vec3_make(0, 90, 0), NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_scale_objects(s, &broken, 0.5, NULL), STATUS_BAD_INPUT);
+    assert_at(s, "vessel", 1, 0.001, 0);
+    assert_at(s, "rod", 1, 0.001 + 0.5 * 2.1, -0.1);
+    assert_true(s->solids[scene_find_solid(s, "vessel")].shape.rotation_deg.y == 90.0);
+    assert_true(s->solids[scene_find_solid(s, "rod")].shape.rotation_deg.y == 90.0);
+    assert_true(s->solids[scene_find_solid(s, "vessel")].shape.radius == vessel_radius);
     scene_destroy(s);
 }
 

@@ -96,7 +96,7 @@ static bool is_repeated(const object_list *of, size_t i)
     return found;
 }
 
-static status apply(const group_edit *e, scene *s, const object_list *of, diagnostic *why)
+static status apply_to_each(const group_edit *e, scene *s, const object_list *of, diagnostic *why)
 {
     vec3 centre, position;
     TRY(position_of(s, of->first, &centre, why));
@@ -108,6 +108,19 @@ static status apply(const group_edit *e, scene *s, const object_list *of, diagno
         TRY(e->act(e, s, of->others[i], vec3_sub(position, centre), why));
     }
     return STATUS_OK;
+}
+
+/* Edits all objects or, if one fails, none. */
+static status apply(const group_edit *e, scene *s, const object_list *of, diagnostic *why)
+{
+    scene *before = scene_clone(s);
+    if (!before)
+        return out_of_memory(why);
+    const status code = apply_to_each(e, s, of, why);
+    if (code != STATUS_OK)
+        edit_restore(s, before);
+    scene_destroy(before);
+    return code;
 }
 
 static status move_one(const group_edit *e, scene *s, const char *name, vec3 from_first, diagnostic *why)

@@ -88,8 +88,7 @@ typedef struct object_list {
     size_t count; /* of the others */
 } object_list;
 
-/* scene_move, scene_turn and scene_scale for such a list. Unlike the others, they may have changed some objects when
- * they fail: use a copy of the scene. */
+/* scene_move, scene_turn and scene_scale for such a list. */
 status scene_move_objects(scene *s, const object_list *of, vec3 by, diagnostic *why);
 status scene_turn_objects(scene *s, const object_list *of, vec3 degrees, diagnostic *why);
 status scene_scale_objects(scene *s, const object_list *of, double factor, diagnostic *why);

@@ -50,8 +50,7 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
     }
 }
 
-/* Undoes a failed edit: restores the values of the clone that was made before it. */
-static void restore(scene *s, const scene *before)
+void edit_restore(scene *s, const scene *before)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         s->solids[i].shape = before->solids[i].shape;
@@ -93,7 +92,7 @@ static status apply(parts_edit *e)
     e->before = before;
     const status code = e->act(e);
     if (code != STATUS_OK)
-        restore(e->s, before);
+        edit_restore(e->s, before);
     scene_destroy(before);
     return code;
 }
