@@ -10,6 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "base/cancel.h"
 #include "base/lanes.h"
 #include "geometry/mesh/mesh.h"
 #include "geometry/mesh/mesh_generators.h"
@@ -554,6 +555,22 @@ static void an_empty_mesh_can_be_moved(void **state)
     mesh_release(m);
 }
 
+/* A caller that returns at once has nothing to free. */
+static void a_cancelled_search_for_equal_positions_has_no_result(void **state)
+{
+    (void)state;
+    mesh *m = NULL;
+    assert_int_equal(generate_icosphere(1, &m, NULL), STATUS_OK);
+    uint32_t nothing, *same = &nothing;
+    cancel_token t = {.ask = NULL};
+    cancel_begin(&t);
+    cancel_set(&t);
+    assert_int_equal(mesh_weld(m, &same, NULL), STATUS_INTERRUPTED);
+    cancel_end(&t);
+    assert_null(same);
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -563,6 +580,7 @@ int main(void)
         cmocka_unit_test(an_edge_of_three_triangles_is_reported),
         cmocka_unit_test(vertices_at_equal_positions_are_merged_whatever_the_sign_of_zero),
         cmocka_unit_test(the_search_for_equal_positions_can_be_skipped),
+        cmocka_unit_test(a_cancelled_search_for_equal_positions_has_no_result),
         cmocka_unit_test(triangles_with_two_equal_corners_are_ignored_for_closedness),
         cmocka_unit_test(each_inverted_triangle_is_reoriented),
         cmocka_unit_test(an_inside_out_cube_is_reoriented),

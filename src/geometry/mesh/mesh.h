@@ -97,8 +97,8 @@ long mesh_reference_count(const mesh *m); /* the current number of owners */
  * mesh_finish, with the mesh unchanged. */
 status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic *why);
 
-/* same[v] is the lowest vertex at v's position, where -0 equals 0. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED:
- * cancelled, with *same incomplete. The caller frees *same, also after STATUS_INTERRUPTED. */
+/* same[v] is the lowest vertex at v's position, where -0 equals 0. The caller frees *same, which is NULL after a
+ * failure. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
 
 /* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */

@@ -82,6 +82,7 @@ static status weld_distinct(const mesh *m, uint32_t **same, diagnostic *why)
 
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
 {
+    *same = NULL;
     if (m->distinct)
         return weld_distinct(m, same, why);
     enum { AHEAD = 16 }; /* the table exceeds the caches: prefetch its lines */
@@ -116,8 +117,12 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
         }
     }
     free(table);
-    *same = found;
-    return cancel_check(why);
+    const status code = cancel_check(why);
+    if (code == STATUS_OK)
+        *same = found;
+    else
+        free(found);
+    return code;
 }
 
 /* --- half-edges ---
