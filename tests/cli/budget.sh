@@ -23,7 +23,7 @@ sanitize* | tsan*) allowed=1000000 ;; # its own memory
 esac
 
 peak() { # COMMAND...: KiB; the exit code in `code`
-    read -r _ _ code _ kib < <(./moment 0 0 "$@" 2>err)
+    read -r _ _ code _ kib _ < <(./moment 0 0 "$@" 2>err)
 }
 peak "$program" --version
 none=$kib
@@ -67,6 +67,9 @@ refused "waiting rays" "a frame of 80 x 60 pixels $needs" render "$scenes/rod.ya
 printf 'meshes: {m: {generate: icosphere, level: 7}}\nsolids: {s: {shape: mesh, mesh: m}}\n' >sphere.yaml
 allowed=$((allowed + 60 * 1024)) refused "a hierarchy" "the hierarchy of 327680 triangles $needs" render sphere.yaml \
     -o out.png --memory-limit=60M
+printf 'meshes: {m: {generate: icosphere, level: 0}}\nsolids: {s: {shape: mesh, mesh: m, copies: [2048, 2048, 1]}}\n' \
+    >copies.yaml
+refused "copies" "the bounds of 4194304 copies of meshes $needs" render copies.yaml -o out.png --memory-limit=200M
 "$program" render "$scenes/rod.yaml" -o big.png --set render.width=2400 --set render.height=1800 \
     --set render.integrator=raycast >made 2>&1
 printf 'textures: {t: {file: big.png}}\nsolids: {s: {shape: sphere, radius: 1, texture: t}}\n' >texture.yaml

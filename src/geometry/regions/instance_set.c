@@ -1,6 +1,7 @@
 /* The instance set: its build, the bounds of its instances, the frames of their copies, and texture coordinates. */
-#include "geometry/regions/instance_set.h"
+#include "base/budget.h"
 #include "base/lanes.h"
+#include "geometry/regions/instance_set.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,12 +132,15 @@ static void span_copies(instance_set *f, const instanced_mesh *p)
 /* Builds the top-level hierarchy over the proxies. */
 static status make_top(instance_set *f, diagnostic *why)
 {
-    status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
-    for (int i = 0; i < f->part_count && code == STATUS_OK; i++)
+    const size_t count = f->instance_count;
+    TRY(memory_budget_check(count * (3 * sizeof(vec3) + sizeof(mesh_triangle)), "use fewer copies", why,
+                            "the bounds of %zu copies of meshes", count));
+    TRY(mesh_create(3 * count, count, false, false, false, &f->proxies, why));
+    for (int i = 0; i < f->part_count; i++)
         span_copies(f, &f->parts[i]);
-    THEN(code, mesh_finish(f->proxies, why));
+    const status code = mesh_finish(f->proxies, why);
     if (code == STATUS_BAD_INPUT)
-        code = diagnose(why, STATUS_BAD_INPUT, "reduce their scale, or place them nearer to the origin",
+        return diagnose(why, STATUS_BAD_INPUT, "reduce their scale, or place them nearer to the origin",
                         "meshes extend beyond 1e9 scene units");
     return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
 }
