@@ -407,13 +407,16 @@ status files_check_complete(const request *req, diagnostic *why)
         return STATUS_OK;
     struct stat about;
     int fd = below_open(req->path, req->root);
-    void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0)
-                                                    : MAP_FAILED;
+    const bool found = fd >= 0 && fstat(fd, &about) == 0;
+    void *bytes = found ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+    const int reason = errno;
     if (fd >= 0)
         close(fd);
-    if (bytes == MAP_FAILED)
+    if (bytes == MAP_FAILED && found && reason == ENOMEM)
         return no_memory_for(req, why);
     diagnostic_locate(why, req->path, 0, 0);
+    if (bytes == MAP_FAILED)
+        return diagnose(why, STATUS_BAD_INPUT, "give a readable mesh file", "cannot read: %s", strerrordesc_np(reason));
     status code = check_bytes(req->kind, bytes, (size_t)about.st_size, why);
     munmap(bytes, (size_t)about.st_size);
     return code;

@@ -307,11 +307,12 @@ static void folders_pipes_loops_and_devices_are_refused(void **state)
 {
     (void)state;
     char *path = in_folder("folder.stl"), *fifo = in_folder("fifo.ply"), *loop = in_folder("loop.obj"),
-         *endless = in_folder("endless.glb");
+         *endless = in_folder("endless.glb"), *unmapped = in_folder("unmapped.stl");
     assert_int_equal(mkdir(path, 0777), 0);
     assert_int_equal(mkfifo(fifo, 0666), 0);
     assert_int_equal(symlink("loop.obj", loop), 0);
     assert_int_equal(symlink("/dev/zero", endless), 0);
+    assert_int_equal(symlink("/proc/version", unmapped), 0); /* regular and of size 0, but not empty */
     refuse_within("nowhere.obj", &limits, "No such file");
     refuse_within("nowhere/a.obj", &limits, "No such file");
     refuse_within("three.obj/a.obj", &limits, "");
@@ -319,10 +320,12 @@ static void folders_pipes_loops_and_devices_are_refused(void **state)
     refuse_within("fifo.ply", &limits, "not a regular file");
     refuse_within("loop.obj", &limits, "symbolic links");
     refuse_within("endless.glb", &limits, "not a regular file");
+    refuse_within("unmapped.stl", &limits, "cannot read: Invalid argument");
     free(path);
     free(fifo);
     free(loop);
     free(endless);
+    free(unmapped);
 }
 
 static const char TOO_LONG[] = "longer than the limit";
