@@ -208,12 +208,33 @@ test('other formats, missing files and bad lines are errors with a remedy', asyn
   await refused({ 'thing.obj': 'mtllib none.mtl\nv 0 0 0\n' }, /none\.mtl: .*No such file/);
   await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj: line 2: the corner '2' of a face is invalid/);
   await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has fewer than three numbers/);
+  await refused({ 'thing.obj': 'v 0 O 0\n' }, /line 1: a vertex has a word that is not a finite number/);
+  await refused({ 'thing.obj': 'vn 0 1 nan\n' }, /line 1: a normal has a word that is not a finite number/);
+  await refused({ 'thing.obj': 'vn 0 1\n' }, /line 1: a normal has fewer than three numbers/);
   await refused({ 'thing.obj': 'v 0 0 0\n' }, /thing\.obj: the file has no triangles/);
   await refused({ 'thing.obj': '' }, /thing\.obj: .*empty/);
   await refused(
     { 'thing.ply': 'ply\nformat ascii 1.0\nelement vertex 3\n' },
     /thing\.ply: line 3: the header has no end/,
   );
+});
+
+/* 64 bytes of memory for a vertex of one byte: 2^24 vertices fill half of the module's 2 GiB, and one more doubles
+ * them. A module of its own, because memory never shrinks. */
+test('a PLY file that does not fit into memory is not called truncated', async () => {
+  const count = (1 << 24) + 1;
+  const header = `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\nproperty uchar a\nend_header\n`;
+  const own = await cuvetteOf('simd128');
+  const read = async (bytes) => {
+    const thing = own.Scene.read(scene('thing.ply'), { files: { 'thing.ply': bytes } });
+    try {
+      await own.engine().render(thing);
+    } finally {
+      thing.destroy();
+    }
+  };
+  await assert.rejects(read(Buffer.concat([bytesOf(header), Buffer.alloc(count)])), /out of memory/);
+  await assert.rejects(read(bytesOf(header)), /the file ends within vertex 1 of 16777217/);
 });
 
 /* Numbers in a fixed order. */

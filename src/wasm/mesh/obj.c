@@ -131,6 +131,8 @@ static status read_place(obj_text *o, lines *l)
 {
     float v[7];
     const int count = lines_numbers(l, 7, v);
+    if (count < 0)
+        return bad(o, "a vertex has a word that is not a finite number", "give three finite numbers");
     if (count < 3)
         return bad(o, "a vertex has fewer than three numbers", "give three finite numbers");
     if (!GROW(o->places, o->place_room, o->place_count + 1))
@@ -157,7 +159,10 @@ static status read_uv(obj_text *o, lines *l)
 static status read_normal(obj_text *o, lines *l)
 {
     float v[3];
-    if (lines_numbers(l, 3, v) != 3)
+    const int count = lines_numbers(l, 3, v);
+    if (count < 0)
+        return bad(o, "a normal has a word that is not a finite number", "give three finite numbers");
+    if (count < 3)
         return bad(o, "a normal has fewer than three numbers", "give three finite numbers");
     if (!GROW(o->normals, o->normal_room, o->normal_count + 1))
         return out_of_memory(o->why);

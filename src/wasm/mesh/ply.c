@@ -220,64 +220,69 @@ static bool read_number(ply *p, ply_type type, double *value)
     return p->ascii ? read_ascii(p, type, value) : read_binary(p, type, value);
 }
 
+/* These return STATUS_BAD_INPUT without a diagnostic, which read_body adds, if a number is invalid or missing. */
+
 /* Reads a list; keep: appends its values to the corners. */
-static bool read_list(ply *p, const ply_property *list, bool keep)
+static status read_list(ply *p, const ply_property *list, bool keep)
 {
     double count, value;
     if (!read_number(p, list->count, &count) || !(count >= 0 && count < 1e9))
-        return false;
+        return STATUS_BAD_INPUT;
     for (double i = 0; i < count; i++) {
         if (!read_number(p, list->type, &value))
-            return false;
+            return STATUS_BAD_INPUT;
         if (!keep)
             continue;
-        if (!(value >= 0 && value < (double)UINT32_MAX) || !GROW(p->corners, p->corner_room, p->corner_count + 1))
-            return false;
+        if (!(value >= 0 && value < (double)UINT32_MAX))
+            return STATUS_BAD_INPUT;
+        if (!GROW(p->corners, p->corner_room, p->corner_count + 1))
+            return out_of_memory(p->why);
         p->corners[p->corner_count++] = (uint32_t)value;
     }
-    return true;
+    return STATUS_OK;
 }
 
-static bool read_vertex(ply *p, const ply_element *e)
+/* Reads a number, or a list as read_list does. */
+static status read_value(ply *p, const ply_property *of, bool keep, double *value)
 {
-    double numbers[PLY_NUMBERS] = {0}, value;
+    if (of->count != PLY_NONE)
+        return read_list(p, of, keep);
+    return read_number(p, of->type, value) ? STATUS_OK : STATUS_BAD_INPUT;
+}
+
+static status read_vertex(ply *p, const ply_element *e)
+{
+    double numbers[PLY_NUMBERS] = {0}, value = 0.0;
     if (!GROW(p->vertices, p->vertex_room, p->vertex_count + 1))
-        return false;
+        return out_of_memory(p->why);
     for (int q = 0; q < e->property_count; q++) {
         const ply_property *of = &e->properties[q];
-        if (of->count != PLY_NONE ? !read_list(p, of, false) : !read_number(p, of->type, &value))
-            return false;
+        TRY(read_value(p, of, false, &value));
         if (of->number >= 0)
             numbers[of->number] = (double)(float)value; /* the importer's numbers are floats */
     }
     memcpy(p->vertices[p->vertex_count++], numbers, sizeof numbers);
-    return true;
+    return STATUS_OK;
 }
 
-static bool read_face(ply *p, const ply_element *e)
+static status read_face(ply *p, const ply_element *e)
 {
     double unused;
     if (!GROW(p->starts, p->start_room, p->face_count + 2))
-        return false;
+        return out_of_memory(p->why);
     p->starts[p->face_count++] = p->corner_count;
-    for (int q = 0; q < e->property_count; q++) {
-        const ply_property *of = &e->properties[q];
-        if (of->count != PLY_NONE ? !read_list(p, of, of->corners) : !read_number(p, of->type, &unused))
-            return false;
-    }
+    for (int q = 0; q < e->property_count; q++)
+        TRY(read_value(p, &e->properties[q], e->properties[q].corners, &unused));
     p->starts[p->face_count] = p->corner_count;
-    return true;
+    return STATUS_OK;
 }
 
-static bool read_other(ply *p, const ply_element *e)
+static status read_other(ply *p, const ply_element *e)
 {
     double unused;
-    for (int q = 0; q < e->property_count; q++) {
-        const ply_property *of = &e->properties[q];
-        if (of->count != PLY_NONE ? !read_list(p, of, false) : !read_number(p, of->type, &unused))
-            return false;
-    }
-    return true;
+    for (int q = 0; q < e->property_count; q++)
+        TRY(read_value(p, &e->properties[q], false, &unused));
+    return STATUS_OK;
 }
 
 /* Reads vertices and faces. */
@@ -287,14 +292,16 @@ static status read_body(ply *p)
     for (int i = 0; i < p->element_count; i++) {
         const ply_element *e = &p->elements[i];
         for (uint64_t k = 0; e->property_count > 0 && k < e->count; k++) {
-            const bool good = e->kind == PLY_VERTEX ? read_vertex(p, e)
-                              : e->kind == PLY_FACE ? read_face(p, e)
-                                                    : read_other(p, e);
-            if (!good)
+            const status code = e->kind == PLY_VERTEX ? read_vertex(p, e)
+                                : e->kind == PLY_FACE ? read_face(p, e)
+                                                      : read_other(p, e);
+            if (code == STATUS_BAD_INPUT)
                 return diagnose(p->why, STATUS_BAD_INPUT,
                                 "the file is truncated, or its header is wrong; export it again",
                                 "the file ends within %s %llu of %llu, or it has an invalid number", names[e->kind],
                                 (unsigned long long)k + 1, (unsigned long long)e->count);
+            if (code != STATUS_OK)
+                return code;
         }
         for (int q = 0; q < e->property_count && e->kind == PLY_VERTEX; q++) {
             p->parts->flat.with_normals |= e->properties[q].number >= 3 && e->properties[q].number <= 5;
