@@ -8,7 +8,9 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { connect } from '../../src/wasm/api/cuvette.js';
-import { ISAS, ROOT, cuvetteOf, native, placesOf, readScene, textOf } from './fixture.mjs';
+import { Memory } from '../../src/wasm/api/memory.js';
+import { Scene } from '../../src/wasm/api/scene.js';
+import { ISAS, ROOT, cuvetteOf, moduleOf, native, placesOf, readScene, textOf } from './fixture.mjs';
 
 const SMALL = { 'render.width': 32, 'render.height': 24 };
 
@@ -70,6 +72,16 @@ for (const isa of ISAS)
           },
         );
       }
+    });
+
+    test('a scene whose files have an invalid name leaves no folder', async () => {
+      const memory = new Memory(await moduleOf(isa));
+      const read = (files) => Scene.read(memory, 'title: a\n', { files });
+      const byte = new Uint8Array(1);
+      read({ 'a/b.png': byte }).destroy();
+      assert.throws(() => read({ 'c.png': byte, '../d.png': byte }), /is not a name of a file/);
+      assert.throws(() => read({ e: byte, 'e/f': byte }));
+      assert.deepEqual(memory.module.FS.readdir('/scenes'), ['.', '..']);
     });
 
     test('parameters, names, texts', () => {

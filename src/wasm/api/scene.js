@@ -28,7 +28,16 @@ class Files {
     this.names = Object.keys(files);
     if (!this.names.length) return;
     this.path = `/scenes/${++folders}`;
-    makeFolder(FS, `${this.path}/${name}`.replace(/\/[^/]*$/, ''));
+    try {
+      this.#write(name, files);
+    } catch (error) {
+      this.release();
+      throw error;
+    }
+  }
+
+  #write(name, files) {
+    makeFolder(this.FS, `${this.path}/${name}`.replace(/\/[^/]*$/, ''));
     for (const name of this.names) {
       const path = `${this.path}/${name}`;
       if (name.split('/').some((part) => !part || part === '.' || part === '..'))
@@ -36,8 +45,8 @@ class Files {
           `'${name}' is not a name of a file below the scene's folder`,
           "leave out '..' and '/' at its start",
         );
-      makeFolder(FS, path.slice(0, path.lastIndexOf('/')));
-      FS.writeFile(path, files[name]);
+      makeFolder(this.FS, path.slice(0, path.lastIndexOf('/')));
+      this.FS.writeFile(path, files[name]);
     }
   }
 
