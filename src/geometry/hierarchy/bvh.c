@@ -283,6 +283,7 @@ status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
     prim_ref *refs = large_pages(aligned_alloc(64, bytes), bytes);
     thread_team *t = thread_team_create(useful(threads, m->triangle_count));
     status code = refs && t ? build(h, t, refs, why) : out_of_memory(why);
+    h->report.threads = t ? thread_team_size(t) : 1;
     thread_team_destroy(t);
     free(refs);
     size_t block = h->single ? sizeof(block_single) : sizeof(block_double);

@@ -65,7 +65,7 @@ struct hierarchy {
     hierarchy_report report;
 };
 
-/* Builders by kind. Each fills h's arrays and report (except build_s and threads) from h->of. */
+/* Builders by kind. Each fills h's arrays and report from h->of, except build_s and, with one thread, threads. */
 status hierarchy_build_none(hierarchy *h, diagnostic *why); /* all triangles in blocks, in order */
 status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why);
 status hierarchy_build_spheres(hierarchy *h, diagnostic *why); /* HIERARCHY_SPHERE and HIERARCHY_OCTANT */

@@ -192,10 +192,12 @@ static void the_tree_is_the_same_for_any_number_of_threads(void **state)
     for (int variant = 0; variant < 3; variant++) {
         fixture one = soup(variant == 2 ? 1000 : 100000, 1.0, variant ? 0.3 : 0.01, variant == 1, 3);
         fixture_build(&one, 1);
+        assert_int_equal(one.h.report.threads, 1);
         size_t block = one.h.single ? sizeof(block_single) : sizeof(block_double);
         for (size_t k = 0; k < 3; k++) {
             fixture other = {.m = one.m};
             fixture_build(&other, threads[k]);
+            assert_int_equal(other.h.report.threads > 1, variant < 2); /* a thousand triangles are one task */
             assert_int_equal(other.h.node_count, one.h.node_count);
             assert_int_equal(other.h.block_count, one.h.block_count);
             assert_memory_equal(other.h.nodes, one.h.nodes, one.h.node_count * sizeof(bvh_node));
