@@ -63,7 +63,7 @@ typedef struct render_settings {
     int64_t tiles_per_worker; /* minimum number of tiles per worker, for which tiles are halved; 0: no minimum */
     int64_t pin;              /* pin_rule */
     int64_t accel;            /* hierarchy_kind */
-    int64_t build_threads;    /* threads that build hierarchies; 0: one per processing unit */
+    int64_t build_threads;    /* threads that build hierarchies, 1..1024; 0: see scene_build_threads */
     int64_t keep;             /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
     /* a refitted hierarchy is rebuilt when its expected cost exceeds its cost at the last build by this factor */
     double rebuild;
@@ -104,7 +104,7 @@ static inline void use_zbuffer(render_settings *r)
  * which taskset and a cgroup's cpuset restrict), at most 1024. */
 int scene_threads(const render_settings *r);
 
-/* Threads that build hierarchies: render.build_threads, or one per processing unit of the machine that is online. */
+/* Threads that build hierarchies: render.build_threads, or as many as without render.threads. */
 int scene_build_threads(const render_settings *r);
 
 /* Whether transparent surfaces use the material's constants as weights, not the Fresnel equations. */

@@ -10,7 +10,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 scene *scene_create(void)
 {
@@ -192,16 +191,19 @@ vec3 scene_to_sun(const scene *s)
 
 /* --- threads --- */
 
-int scene_threads(const render_settings *r)
+static int automatic_threads(void)
 {
     enum { THREADS_MAX = 1024 };
-    if (r->threads > 0)
-        return (int)r->threads;
     const int units = thread_team_units();
     return units > THREADS_MAX ? THREADS_MAX : units;
 }
 
+int scene_threads(const render_settings *r)
+{
+    return r->threads > 0 ? (int)r->threads : automatic_threads();
+}
+
 int scene_build_threads(const render_settings *r)
 {
-    return r->build_threads > 0 ? (int)r->build_threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    return r->build_threads > 0 ? (int)r->build_threads : automatic_threads();
 }

@@ -146,6 +146,7 @@ static void automatic_threads_respect_the_affinity_of_the_process(void **state)
         assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
         s->render.pool = pool;
         assert_int_equal(workers_of(s), CPU_COUNT(&all));
+        assert_int_equal(scene_build_threads(&s->render), CPU_COUNT(&all));
         const fingerprint f = fingerprint_at(s, isa_best(), NULL);
         expect_same(&f, &expected);
         size_t unit = 0;
@@ -155,6 +156,7 @@ static void automatic_threads_respect_the_affinity_of_the_process(void **state)
         CPU_SET(unit, &one);
         assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
         assert_int_equal(workers_of(s), 1);
+        assert_int_equal(scene_build_threads(&s->render), 1);
         assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
     }
     assert_int_equal(s->render.threads, 0); /* the scene keeps the word */
