@@ -47,9 +47,10 @@ static status check_form(const solid_shape *s, int k, lens_form *form, diagnosti
     *form = lens_form_of(s, k, &within);
     if (*form < LENS_TURNS)
         return STATUS_OK;
-    char remedy[160];
-    snprintf(remedy, sizeof remedy, "use a diameter of at most %.6g, or smaller a4_%d, a6_%d and a8_%d", 2.0 * within,
-             k + 1, k + 1, k + 1);
+    char remedy[160], diameter[48] = "smaller diameter"; /* if the side is not allowed even near the axis */
+    if (within > 0.0)
+        snprintf(diameter, sizeof diameter, "diameter of at most %.6g", 2.0 * within);
+    snprintf(remedy, sizeof remedy, "use a %s, or smaller a4_%d, a6_%d and a8_%d", diameter, k + 1, k + 1, k + 1);
     const char *what = *form == LENS_STEEP ? "is too steep" : "turns more than once between convex and concave";
     return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what, lens_rim(s));
 }

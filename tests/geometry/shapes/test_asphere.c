@@ -503,6 +503,8 @@ static void impossible_aspheres_are_refused(void **state)
     s = flat;
     s.even_1[0] = -5.0; /* a slope of 20 at the rim */
     expect_refused(s, "side 1 is too steep", "a diameter of at most 1.8");
+    s.even_1[0] = -1e9;
+    expect_refused(s, "side 1 is too steep", "use a smaller diameter, or smaller a4_1");
     s = flat;
     s.even_1[0] = 1.0, s.even_1[1] = -2.5, s.even_1[2] = 1.5; /* it bends up, down and up */
     expect_refused(s, "side 1 turns more than once", "a6_1 and a8_1");
