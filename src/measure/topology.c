@@ -340,9 +340,13 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
     memset(set, 0, sizeof set);
     const bool found = add_units(machine, pu, set, sizeof set);
     const int failed = found && !machine->described ? sched_setaffinity(0, sizeof set, set) : 0, reason = errno;
-    if (!found)
+    if (!found && pu >= 0)
         return diagnose(why, STATUS_BAD_INPUT, "use one of the units that `cuvette machine` lists",
                         "this process may not use processing unit %d", pu);
+    if (pu < 0 && (!found || failed))
+        return diagnose(why, STATUS_FAILURE, "start the program again",
+                        "cannot allow a thread all processing units of the process: %s",
+                        found ? strerrordesc_np(reason) : "none is known");
     if (failed)
         return diagnose(why, STATUS_FAILURE, "set render.pin=none", "cannot bind a thread to processing unit %d: %s",
                         pu, strerrordesc_np(reason));

@@ -31,7 +31,7 @@ int topology_package_count(const topology *machine);
 int topology_place(const topology *machine, pin_policy policy, int worker, int count);
 
 /* Binds the calling thread to one processing unit; -1 restores all units of the process. Has no effect for a synthetic
- * topology. STATUS_BAD_INPUT for a unit that the process may not use. */
+ * topology. STATUS_BAD_INPUT for a unit that the process may not use; STATUS_FAILURE if the system refuses. */
 status topology_bind_thread(const topology *machine, int pu, diagnostic *why);
 
 /* The OS index of the current unit of the calling thread; -1 if unknown. */

@@ -7,9 +7,22 @@
 
 #include "measure/topology.h"
 
+#include <errno.h>
 #include <sched.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+static bool refuses;
+
+/* Takes the place of the C library's function. */
+int sched_setaffinity(pid_t thread, size_t size, const cpu_set_t *set)
+{
+    errno = EINVAL;
+    return refuses ? -1 : (int)syscall(SYS_sched_setaffinity, thread, size, set);
+}
 
 static topology *described(const char *text)
 {
@@ -198,6 +211,12 @@ static void threads_are_bound_on_this_machine(void **state)
     assert_int_equal(sched_getaffinity(0, sizeof now, &now), 0);
     assert_true(CPU_EQUAL(&now, &own));
     assert_int_equal(topology_bind_thread(machine, 1 << 20, &why), STATUS_BAD_INPUT);
+    refuses = true;
+    assert_int_equal(topology_bind_thread(machine, topology_place(machine, PIN_COMPACT, 0, 1), &why), STATUS_FAILURE);
+    assert_non_null(strstr(why.what, "cannot bind a thread to processing unit"));
+    assert_int_equal(topology_bind_thread(machine, -1, &why), STATUS_FAILURE);
+    assert_string_equal(why.what, "cannot allow a thread all processing units of the process: Invalid argument");
+    refuses = false;
 
     char *xml = topology_xml(machine);
     char *name = strstr(xml, "\"HostName\"");
