@@ -126,8 +126,10 @@ size_t csv_split(char *line, char **fields)
 static status damaged(const char *path, long line, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or correct or remove this line in a copy",
-                    "the row is damaged");
+    return diagnose(why, STATUS_BAD_INPUT,
+                    line == 1 ? "move the file away, or correct this line in a copy"
+                              : "move the file away, or correct or remove this line in a copy",
+                    line == 1 ? "the header is damaged" : "the row is damaged");
 }
 
 /* Finds the starts of the lines, and replaces the newlines of the copy by 0. Returns the number of lines. */

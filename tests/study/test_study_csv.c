@@ -40,18 +40,20 @@ static void csv_fields_round_trip(void **state)
     csv_destroy(table);
 }
 
+static diagnostic reason; /* of rows_of */
+
 /* Contents of the file -> number of rows, or -1 for an error, and its line. */
 static int rows_of(const fixture *f, const char *text, long *line)
 {
     char path[400];
-    diagnostic why = {0};
+    reason = (diagnostic){0};
     csv *table = NULL;
     fixture_write(f, "t.csv", text);
     fixture_path(f, "t.csv", path);
-    status code = csv_read(path, &table, &why);
+    status code = csv_read(path, &table, &reason);
     int rows = code == STATUS_OK ? (int)table->row_count : -1;
     if (line)
-        *line = why.line;
+        *line = reason.line;
     csv_destroy(table);
     return rows;
 }
@@ -146,6 +148,7 @@ static void damaged_rows_are_located(void **state)
     long line;
     assert_int_equal(rows_of(f, "a,b\n1,2\n3\n", &line), -1);
     assert_int_equal(line, 3);
+    assert_string_equal(reason.what, "the row is damaged");
     assert_int_equal(rows_of(f, "a,b\n1,2,3\n", &line), -1);
     assert_int_equal(line, 2);
     assert_int_equal(rows_of(f, "a,b\n1,\"2\n", &line), -1);
@@ -153,6 +156,8 @@ static void damaged_rows_are_located(void **state)
     assert_int_equal(rows_of(f, "a,b\n\"1\"2,3\n", &line), -1);
     assert_int_equal(rows_of(f, "a,\"b\n1,2\n", &line), -1);
     assert_int_equal(line, 1);
+    assert_string_equal(reason.what, "the header is damaged");
+    assert_null(strstr(reason.remedy, "remove"));
 }
 
 static void zero_bytes_are_reported_as_damage(void **state)
