@@ -134,6 +134,29 @@ static void strangers_name_no_files_and_are_bounded(void **state)
     assert_null(s);
 }
 
+/* A file of such a mesh or texture does not exist. */
+static void arrays_of_a_program_are_refused(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"meshes: {m: {generate: sparse, count: 5}}\n",
+                                        "textures: {t: {file: a.png}}\n"};
+    for (int k = 0; k < 2; k++) {
+        scene *s = NULL;
+        char *text = NULL;
+        diagnostic why = {.line = 0};
+        assert_int_equal(scene_read_text("own", texts[k], strlen(texts[k]), &s, &why), STATUS_OK);
+        if (k == 0)
+            s->meshes[0].source = MESH_ARRAYS;
+        else
+            s->textures[0].path[0] = 0;
+        assert_int_equal(shared_scene_text(s, &text, &why), STATUS_BAD_INPUT);
+        assert_null(text);
+        assert_string_equal(why.what + 1, " was given as arrays, which a shared scene cannot contain");
+        assert_non_null(strstr(why.remedy, "write it to a file"));
+        scene_destroy(s);
+    }
+}
+
 static void read_bad(const char *link)
 {
     scene *s = NULL;
@@ -276,6 +299,7 @@ int main(void)
         cmocka_unit_test(all_forms_give_the_same_scene),
         cmocka_unit_test(settings_of_the_machine_stay_at_home),
         cmocka_unit_test(strangers_name_no_files_and_are_bounded),
+        cmocka_unit_test(arrays_of_a_program_are_refused),
         cmocka_unit_test(triangles_are_planned_for_each_generator),
         cmocka_unit_test(damaged_links_are_refused),
         cmocka_unit_test(a_bomb_is_refused),

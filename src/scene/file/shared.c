@@ -17,10 +17,19 @@ static status refuse_file(const char *what, const char *path, diagnostic *why)
                     "a shared scene cannot name files, but %.80s reads %.200s", what, path);
 }
 
+/* Refuses what a program gave as arrays: no file of it could accompany the scene. */
+static status refuse_arrays(const char *name, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "remove it, or write it to a file, and send the scene file together with it",
+                    "%.80s was given as arrays, which a shared scene cannot contain", name);
+}
+
 static status check_files(const scene *s, diagnostic *why)
 {
     if (s->background.image_path[0])
         return refuse_file("the background", s->background.image_path, why);
+    if (s->texture_count > 0 && !s->textures[0].path[0])
+        return refuse_arrays(s->textures[0].name, why);
     if (s->texture_count > 0)
         return refuse_file(s->textures[0].name, s->textures[0].path, why);
     for (size_t i = 0; i < s->mesh_count; i++) {
@@ -28,7 +37,7 @@ static status check_files(const scene *s, diagnostic *why)
         if (m->path[0] || m->script_path[0])
             return refuse_file(m->name, m->path[0] ? m->path : m->script_path, why);
         if (m->source == MESH_ARRAYS)
-            return refuse_file(m->name, "a program's memory", why);
+            return refuse_arrays(m->name, why);
     }
     return STATUS_OK;
 }
