@@ -36,7 +36,7 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
         return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_fan_rule)",
                         "the size of the fan's rule is %zu, which is too small", given->size);
     if (!engine_is_finite(given->from) || !engine_is_finite(given->to) || !engine_is_finite(n))
-        return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "the fan's axis is not finite");
+        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the fan's axis or normal is not finite");
     if (given->rays < 1 || given->rays > FAN_RAYS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 100000 rays", "a fan of %d rays is out of range", given->rays);
     if (!(given->width >= 0 && given->width <= 1e6) || !(given->spread_deg >= 0 && given->spread_deg <= 179))

@@ -214,13 +214,15 @@ static void test_wrong_rays_and_fans(void **state)
     assert_int_equal(cuvette_query_trace_pixel(q, WIDTH, 0, &tree, &why), CUVETTE_BAD_INPUT);
     assert_int_equal(cuvette_query_trace_pixel(NULL, 0, 0, &tree, &why), CUVETTE_BAD_INPUT);
     const cuvette_fan_rule good = {.size = sizeof good, .from = {-3, 1.5, 0}, .to = {3, 1.5, 0}, .rays = 3, .width = 1};
-    cuvette_fan_rule bad[6] = {good, good, good, good, good, good};
+    cuvette_fan_rule bad[7] = {good, good, good, good, good, good, good};
     bad[0].size = 8, bad[1].rays = 0, bad[2].width = -1, bad[3].spread_deg = 180, bad[4].from[1] = (double)NAN;
     memcpy(bad[5].to, bad[5].from, sizeof bad[5].to);
+    bad[6].normal[2] = (double)NAN;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(cuvette_query_fan(q, &bad[i], &f, &why), CUVETTE_BAD_INPUT);
         assert_true(f == NULL && why.what[0] && why.remedy[0]);
     }
+    assert_string_equal(why.what, "the fan's axis or normal is not finite");
     assert_null(cuvette_tree_nodes(NULL, NULL));
     assert_null(cuvette_fan_rays(NULL, NULL));
     cuvette_tree_destroy(NULL);
