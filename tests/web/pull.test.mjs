@@ -116,10 +116,32 @@ export const cases = {
     await up(height / 2 - rest.top - IN);
     await screen.page.keyboard.press('Enter');
     await held(screen, true);
+    await screen.page.getByText('Slime grabbed').first().waitFor();
     await up(LIFT);
     await drawnOut(t, screen, rest);
     await screen.page.keyboard.press('Enter');
     await checkBack(t, lab, screen, rest);
+  },
+
+  'a grab by keys is reported when it has succeeded': async (t) => {
+    const lab = await t.lab('tests/slime.yaml');
+    const screen = await t.open(lab);
+    await screen.chooseTool('Grab');
+    await screen.page.evaluate(() => {
+      const { lab } = window;
+      const say = lab.say;
+      window.said = [];
+      lab.say = (words, ...others) => {
+        window.said.push(words);
+        return say(words, ...others);
+      };
+    });
+    screen.expect(/404 .*api\/slime\/grab/);
+    await screen.stage.focus();
+    for (let i = 0; i < 50; i++) await screen.page.keyboard.press('ArrowUp');
+    await screen.page.keyboard.press('Enter');
+    await screen.until(() => window.said.includes('No slime at that point'));
+    t.equal((await screen.page.evaluate(() => window.said)).length, 1, 'messages after a grab next to the slime');
   },
 
   'a paused slime keeps its shape, and off restores the scene': async (t) => {

@@ -98,9 +98,10 @@ export function createGrab(lab) {
 
   function toggle(hand) {
     cross ??= { x: view.width / 2, y: view.height / 2 };
-    if (hand) hands.drop(KEYS);
-    else hands.grab(KEYS, cross.x, cross.y);
-    lab.say(hand ? 'Slime released' : 'Slime grabbed');
+    if (hand) {
+      hands.drop(KEYS);
+      lab.say('Slime released');
+    } else hands.grab(KEYS, cross.x, cross.y, () => lab.say('Slime grabbed'));
   }
 
   /* A dark edge under a bright line is visible on any image. */
@@ -137,7 +138,7 @@ export function createGrab(lab) {
 /* --- hands that hold the slime, one per pointer or key ---
  * Moves are sent one after the other; the newest replaces a waiting one. Positions are in pixels of the full image. A
  * hand is {x, y, depth, where ([x,y,z] of the grab point, null before), move(x, y, depth)}; changed() is called when a
- * hand is added, moved or removed. */
+ * hand is added, moved or removed, and grabbed() of a hand when it holds the slime. */
 
 /* Errors that the user cannot avoid: the slime restarted, or the page is being closed. */
 const gone = (error) => error.status === 409 || error.status === 404 || error.status === 0 || error.status === 401;
@@ -154,7 +155,7 @@ function createHands(lab, changed) {
   });
   return { all: () => [...hands.values()], grab, get: (key) => hands.get(key), drop, dropAll };
 
-  function grab(key, x, y) {
+  function grab(key, x, y, grabbed) {
     drop(key);
     const hand = { x, y, depth: 0, where: null, number: null, held: true, dirty: false, sending: true };
     hand.move = (nextX, nextY, depth) => {
@@ -177,11 +178,11 @@ function createHands(lab, changed) {
     };
     hands.set(key, hand);
     changed();
-    hold(key, hand, x, y);
+    hold(key, hand, x, y, grabbed);
     return hand;
   }
 
-  async function hold(key, hand, x, y) {
+  async function hold(key, hand, x, y, grabbed) {
     try {
       await playing(lab);
       const reply = await lab.post('/api/slime/grab', { x, y });
@@ -195,8 +196,10 @@ function createHands(lab, changed) {
       return;
     }
     hand.sending = false;
-    if (hand.held) send(hand);
-    else release(hand);
+    if (hand.held) {
+      grabbed?.();
+      send(hand);
+    } else release(hand);
   }
 
   async function send(hand) {
