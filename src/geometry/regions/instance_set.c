@@ -1,7 +1,7 @@
 /* The instance set: its build, the bounds of its instances, the frames of their copies, and texture coordinates. */
+#include "geometry/regions/instance_set.h"
 #include "base/budget.h"
 #include "base/lanes.h"
-#include "geometry/regions/instance_set.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
