@@ -282,7 +282,7 @@ static void a_texture_from_memory_is_visible(void **state)
     assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.what, "paint"));
     assert_int_equal(cuvette_scene_write_link(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
-    assert_non_null(strstr(why.what, "paint reads"));
+    assert_non_null(strstr(why.what, "paint was given as"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
     cuvette_scene_destroy(s);
     cuvette_request request = CUVETTE_REQUEST;
