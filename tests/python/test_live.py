@@ -45,7 +45,9 @@ def test_save_for_slides(laboratory, rod, tmp_path):
 
 def test_without_the_laboratory(rod, monkeypatch, tmp_path):
     monkeypatch.setenv("CUVETTE_LIVE", str(tmp_path / "none.html"))
-    with pytest.raises(cuvette.InputError, match="there is no .*none.html.*; make it with: make .* site"):
+    with pytest.raises(
+        cuvette.InputError, match="cannot find the laboratory in one file, .*none.html; make it with: make .* site"
+    ):
         rod.live()
 
 
