@@ -117,13 +117,16 @@ empty "runs.json has no other part" \
 # --- every command of README.md, as it stands and in order, in a copy of the tree with its build
 tree=$work/tree
 mkdir -p "$tree/build" "$tree/results" "$work/home"
-cp -a "$root"/{.ci,Makefile,mk,README.md,CHANGELOG.md,LICENSE,src,experiments,plots,tests} "$tree/"
-cp -a "$root/results/README.md" "$tree/results/"
+find "$root" -mindepth 1 -maxdepth 1 ! -name .git ! -name build ! -name results -exec cp -a -t "$tree" {} +
+find "$root/results" -mindepth 1 -maxdepth 1 \( -name README.md -o -name reference \) -exec cp -a -t "$tree/results" {} +
 built= # whether the program is that of README.md, not one with sanitizers
 if [[ $(dirname "$program") == "$(realpath "$root/build")" ]]; then
     built=1
     find "$root/build" -maxdepth 1 \( -type f -o -name obj -o -name plain -o -name web \) \
         -exec cp -a -t "$tree/build" {} +
+    mkdir "$tree/build/wasm" # what `make setup-wasm` fetches, and what it takes minutes to compile
+    [[ ! -d $root/build/wasm/sources ]] || ln -s "$root/build/wasm/sources" "$tree/build/wasm/"
+    [[ ! -d $root/build/wasm/libraries ]] || cp -a "$root/build/wasm/libraries" "$tree/build/wasm/"
 else
     ln -s "$program" "$(dirname "$program")/cuvette-import" "$tree/build/"
 fi
@@ -190,6 +193,8 @@ command() { # TEXT: a line of README.md, or a text in Python
     if [[ $line == make* && ! $built ]]; then how=skip reason='this is another build'; fi
     [[ $how == python ]] && ! "$python" -c 'import cffi, numpy, pandas' 2>said && how=skip
     [[ $how == site && ! ${CHECK:-} ]] && how=skip reason+='; CHECK=1 runs it'
+    [[ $how == site && ! (-d $root/build/wasm/sources && -x $(command -v esbuild)) ]] &&
+        how=skip reason='make setup-wasm setup-site has not run'
     case $how:$line in
     try:*) try "$line" ;;
     skip:*) skip "$line: $reason" ;;

@@ -10,7 +10,7 @@ verdict() { # STATUS WHAT [WHY]
     else
         failed=$((failed + 1))
         echo "not ok $cases - $2"
-        [[ -z ${3:-} ]] || head -20 <<<"$3" | sed 's/^/# /'
+        [[ -z ${3:-} ]] || tail -20 <<<"$3" | sed 's/^/# /'
     fi
 }
 equal() { # WHAT GOT WANTED
