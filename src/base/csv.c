@@ -136,18 +136,18 @@ static status damaged(const char *path, long line, diagnostic *why)
 static size_t find_lines(csv *table)
 {
     size_t lines = 0;
-    for (const char *at = table->raw, *end = at + table->whole; at < end && (at = memchr(at, '\n', (size_t)(end - at)));
-         at++)
+    for (const char *at = table->raw, *end = at + table->complete_size;
+         at < end && (at = memchr(at, '\n', (size_t)(end - at))); at++)
         lines++;
     table->start = malloc((lines + 1) * sizeof *table->start);
-    table->split = malloc(table->whole + 1);
+    table->split = malloc(table->complete_size + 1);
     table->broken = calloc(lines + 1, sizeof *table->broken);
     if (!table->start || !table->split || !table->broken)
         return 0;
-    memcpy(table->split, table->raw, table->whole);
+    memcpy(table->split, table->raw, table->complete_size);
     size_t line = 0;
-    for (char *at = table->split, *end = at + table->whole; at < end && (at = memchr(at, '\n', (size_t)(end - at)));
-         at++) {
+    for (char *at = table->split, *end = at + table->complete_size;
+         at < end && (at = memchr(at, '\n', (size_t)(end - at))); at++) {
         *at = 0;
         table->start[line++] = (size_t)(at - table->split) + 1;
     }
@@ -170,7 +170,7 @@ static bool split_row(csv *table, size_t row)
 /* Splits the rows into fields; strict: a broken row is an error. */
 static status split_all(csv *table, const char *path, bool strict, diagnostic *why)
 {
-    if (table->whole == 0)
+    if (table->complete_size == 0)
         return STATUS_OK;
     const size_t lines = find_lines(table);
     if (lines == 0)
@@ -286,8 +286,8 @@ static status read_table(const char *path, const char *root, reading how, csv **
     if (code == STATUS_OK && how != READ_OWN)
         code = how == READ_ANY ? mend(table, why) : check_form(table, path, why);
     if (code == STATUS_OK) {
-        table->whole = csv_complete_size(table->raw, table->size);
-        table->torn = table->whole < table->size;
+        table->complete_size = csv_complete_size(table->raw, table->size);
+        table->torn = table->complete_size < table->size;
         code = split_all(table, path, how != READ_ROWS, why);
     }
     if (code != STATUS_OK) {

@@ -32,14 +32,14 @@ size_t csv_complete_size(const char *text, size_t size);
 /* The complete lines of a file. */
 typedef struct csv {
     char *raw;
-    size_t size;  /* bytes of the file */
-    size_t whole; /* csv_complete_size of raw */
-    char *split;  /* the same bytes split into fields; owned */
+    size_t size;          /* bytes of the file */
+    size_t complete_size; /* csv_complete_size of raw */
+    char *split;          /* the same bytes split into fields; owned */
     size_t column_count;
     char **header; /* column_count names */
     size_t row_count;
     char **fields; /* row_count * column_count fields, after the header */
-    size_t *start; /* offset of row i in raw; start[row_count] = whole */
+    size_t *start; /* offset of row i in raw; start[row_count] = complete_size */
     bool mended;   /* csv_read_any: raw differs from the file, because it was converted to the form of this program */
     bool torn;     /* the last line is left out: no newline (csv_read_any: and too few fields), or a zero byte */
     bool *broken;  /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */

@@ -86,13 +86,13 @@ static status refuse(const char *path, const char *what, diagnostic *why)
 static bool has_header(const csv *there, const char *header)
 {
     const size_t size = strlen(header);
-    return there->whole >= size && memcmp(there->raw, header, size) == 0;
+    return there->complete_size >= size && memcmp(there->raw, header, size) == 0;
 }
 
 /* Whether the file is a header that was not written completely: its end is missing, or sectors of it read as zeros. */
 static bool is_torn_header(const csv *there, const char *header)
 {
-    bool torn = there->whole == 0 && there->size <= strlen(header);
+    bool torn = there->complete_size == 0 && there->size <= strlen(header);
     for (size_t i = 0; torn && i < there->size; i++)
         torn = there->raw[i] == header[i] || there->raw[i] == 0;
     return torn;

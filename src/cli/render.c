@@ -203,7 +203,7 @@ static void print_summary(const job_account *f, const outputs *files)
     char *depth = NULL;
     (void)scene_get(s, "render.depth", &depth, NULL);
     printf("%s%lldx%lld pixels, depth %s: %llu rays in %.3f s (%.1f million per second), film %016llx",
-           f->whole ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, depth ? depth : "",
+           f->complete ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, depth ? depth : "",
            (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)job_account_hash(f));
     free(depth);

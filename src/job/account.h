@@ -13,7 +13,7 @@ typedef struct job_account {
     const scene *of; /* the rendered scene */
     isa level;
     render_result *result;    /* the last complete frame; a partial one if none is complete */
-    bool whole;               /* all requested frames are finished */
+    bool complete;            /* all requested frames are finished */
     size_t count;             /* number of finished frames */
     double *wall_s, *cpu_s;   /* a time for each finished frame, in order */
     usage spent;              /* over all frames, if the job measures it */

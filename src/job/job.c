@@ -185,14 +185,16 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
     return renderer_prepare(j->renderer, s, why);
 }
 
-/* Renders the tiles of this process, then adds those of the other processes. */
-static status render_shared(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
+/* Renders the tiles of this process and, where processes share the frame, adds those of the others. */
+static status render_tiles(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
 {
     const job_distribution *sharing = w->job->settings.sharing;
-    TRY(sharing->begin(sharing->context, s, options, &options->source, why));
-    options->progress = NULL;
+    if (sharing) {
+        TRY(sharing->begin(sharing->context, s, options, &options->source, why));
+        options->progress = NULL;
+    }
     const status rendered = renderer_render(w->job->renderer, s, options, out, why);
-    return sharing->end(sharing->context, rendered, *out, why);
+    return sharing ? sharing->end(sharing->context, rendered, *out, why) : rendered;
 }
 
 /* Renders one frame, with or without the maps. */
@@ -217,8 +219,7 @@ static status render_frame(work *w, const scene *s, bool maps, render_result **o
     *out = NULL;
     cancel_clear(&w->late);
     cancel_begin(&w->late);
-    const status code = w->job->settings.sharing ? render_shared(w, s, &options, out, why)
-                                                 : renderer_render(w->job->renderer, s, &options, out, why);
+    const status code = render_tiles(w, s, &options, out, why);
     cancel_end(&w->late);
     if (code != STATUS_INTERRUPTED)
         return code;
@@ -367,7 +368,7 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
     THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));
     if (code == STATUS_OK && extra)
         code = add_maps(&w, s, out, why);
-    out->whole = code == STATUS_OK;
+    out->complete = code == STATUS_OK;
     return code;
 }
 

@@ -118,9 +118,9 @@ static int64_t counted(const job_account *a, uint64_t count)
 #define FRAME_QUANTITIES(Q) \
  Q(film_hash, "", HASH, SAME, IN_ROWS, "film_hash", NULL, "hash of the film, 16 hex digits", \
    job_account_hash(a)) \
- Q(whole, "", TRUTH, OVER, JSON_ONLY, "complete", NULL, \
+ Q(complete, "", TRUTH, OVER, JSON_ONLY, "complete", NULL, \
    "false: the render was interrupted, and the numbers cover only its finished part", \
-   a->whole) \
+   a->complete) \
  Q(wall_s, "s", REAL, MEDIAN, IN_ROWS, "wall_s", "wall_s", \
    "wall time of the frame; with render.pool off, including creating and joining threads", job_account_wall_s(a)) \
  Q(cpu_s, "s", REAL, MEDIAN, IN_ROWS, "cpu_s", "cpu_s", "CPU time of the process over the same interval", \

@@ -138,7 +138,7 @@ static status sum_up(job_account *account, diagnostic *why)
     result->wall_s = account->wall_s[0] = wall_s;
     result->cpu_s = account->cpu_s[0] = NAN;
     account->count = 1;
-    account->whole = true;
+    account->complete = true;
     return STATUS_OK;
 }
 

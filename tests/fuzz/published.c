@@ -13,7 +13,8 @@ static void read_table(const char *path)
         must_refuse(code, &why);
         return;
     }
-    must(table && table->whole <= table->size && (!table->start || table->start[table->row_count] == table->whole));
+    must(table && table->complete_size <= table->size &&
+         (!table->start || table->start[table->row_count] == table->complete_size));
     for (size_t row = 0; row < table->row_count; row++)
         for (size_t k = 0; k < table->column_count; k++)
             csv_field_real(table, row, csv_column(table, table->header[k]));

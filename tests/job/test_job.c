@@ -69,13 +69,13 @@ static void a_cancelled_job_starts_no_work(void **state)
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_INTERRUPTED);
     assert_null(made.result);
     assert_int_equal(made.count, 0);
-    assert_false(made.whole);
+    assert_false(made.complete);
     assert_string_equal(why.what, "interrupted");
     job_account_release(&made);
     cancel_clear(&token);
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_OK);
     cancel_end(&token);
-    assert_true(made.whole);
+    assert_true(made.complete);
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);
@@ -102,7 +102,7 @@ static void a_frame_ends_when_it_is_cancelled(void **state)
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
     cancel_end(&c.token);
     assert_non_null(made.result); /* the unfinished frame */
-    assert_false(made.whole);
+    assert_false(made.complete);
     assert_int_equal(made.count, 0);
     assert_true(c.share < 1.0);
     assert_true(made.result->counters.camera < 2048u * 2048u * 64u);
@@ -149,7 +149,7 @@ static void finished_frames_are_kept(void **state)
     assert_int_equal(job_repeat(j, s, 3, &options, &made, NULL), STATUS_INTERRUPTED);
     cancel_end(&token);
     assert_int_equal(made.count, 2);
-    assert_false(made.whole);
+    assert_false(made.complete);
     assert_int_equal(made.result->counters.camera, 512 * 512 * 16);
     assert_true(made.film_hash == film_hash(made.result->img));
     job_account_release(&made);

@@ -75,7 +75,7 @@ static void count_cells(const lab_room *room, int counted[TINY_CELLS])
     char *path = room_path(room, "results/tiny/rows.csv");
     csv *table = NULL;
     assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
-    assert_int_equal(table->whole, table->size);
+    assert_int_equal(table->complete_size, table->size);
     bool *seen = calloc(TINY_CELLS * (table->row_count + 1), sizeof *seen);
     memset(counted, 0, TINY_CELLS * sizeof *counted);
     for (size_t i = 0; i < table->row_count; i++) {

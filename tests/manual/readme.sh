@@ -118,7 +118,7 @@ empty "runs.json has no other part" \
 tree=$work/tree
 mkdir -p "$tree/build" "$tree/results" "$work/home"
 find "$root" -mindepth 1 -maxdepth 1 ! -name .git ! -name build ! -name results -exec cp -a -t "$tree" {} +
-find "$root/results" -mindepth 1 -maxdepth 1 \( -name README.md -o -name reference \) -exec cp -a -t "$tree/results" {} +
+find "$root"/results/{README.md,reference} -prune -exec cp -a -t "$tree/results" {} +
 built= # whether the program is that of README.md, not one with sanitizers
 if [[ $(dirname "$program") == "$(realpath "$root/build")" ]]; then
     built=1

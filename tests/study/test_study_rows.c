@@ -44,7 +44,7 @@ static char *write_row(const study *s, const scene *setting, bool workers)
     const job_account made = {.of = setting,
                               .level = ISA_BASE,
                               .result = &frame,
-                              .whole = true,
+                              .complete = true,
                               .ended_ms = INT64_C(1700000000250),
                               .film_hash = 0xabc,
                               .spent = {.wall_s = 1,

@@ -233,7 +233,7 @@ static status read_table(row_reader *r, const csv *table, const char *path, diag
     status code = checksum_columns_create(table->header, table->column_count, &st.hashes, why);
     for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++)
         code = read_row(&st, row);
-    if (code == STATUS_OK && table->size > table->whole &&
+    if (code == STATUS_OK && table->size > table->complete_size &&
         row_files_add_issue(r->files, ROW_TORN, path, (long)table->row_count + 2,
                             "an incomplete line: the process was killed; the next run moves it away") != STATUS_OK)
         code = out_of_memory(why);
