@@ -149,7 +149,7 @@ static void hint_at_unseen(const scene *s, const char *owner, const material *m,
 /* Materials first, then solids with other values than their material. Layers show no light, so there is no hint. */
 static void hint_at_all_unseen(const scene *s, const note_sink *taker)
 {
-    if (integrator_traits_of(&s->render)->layers)
+    if (integrator_traits_of(&s->render)->unlit)
         return;
     for (size_t i = 0; i < s->material_count; i++)
         hint_at_unseen(s, s->materials[i].name, &s->materials[i].value, NULL, taker);
@@ -275,9 +275,9 @@ static void hint_at_lens(const scene *s, const note_sink *taker)
     if (s->camera.aperture == 0.0 || camera_lens_is_sampled(s))
         return;
     note_report(taker, "camera", "aperture",
-                traits->by_chance                 ? "set render.paths to 64"
-                : traits->drawn || traits->layers ? "set render.integrator to whitted and render.samples to 16"
-                                                  : "set render.samples to 16",
+                traits->by_chance                ? "set render.paths to 64"
+                : traits->drawn || traits->unlit ? "set render.integrator to whitted and render.samples to 16"
+                                                 : "set render.samples to 16",
                 "nothing is blurred: each pixel has only rays through the centre of the lens");
 }
 
@@ -342,7 +342,7 @@ static void hint_at_crystal(const scene *s, const solid *owner, const note_sink 
 static void hint_at_tone(const scene *s, const note_sink *taker)
 {
     const camera *c = &s->camera;
-    if (integrator_traits_of(&s->render)->layers && (c->exposure != 0.0 || c->tone != TONE_NONE))
+    if (integrator_traits_of(&s->render)->unlit && (c->exposure != 0.0 || c->tone != TONE_NONE))
         note_report(taker, "camera", c->exposure != 0.0 ? "exposure" : "tone", "set render.integrator to whitted",
                     "layers show no light: exposure and tone do not apply to them");
     else if (c->white != 4.0 && c->tone != TONE_REINHARD)

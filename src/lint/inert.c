@@ -212,7 +212,7 @@ static bool is_unmet_by_camera(const inert_case *c, const char *path)
         {"inner_radius", {NULL}},
         {"floor", {NULL}},
     };
-    if (!has_layers(c->s) || !c->witness->same)
+    if (!is_unlit(c->s) || !c->witness->same)
         return false;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (!is_named(c, rows[i].name))

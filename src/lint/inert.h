@@ -54,7 +54,7 @@ bool is_among(const inert_case *c, const char *const *names);
 bool is_black(vec3 color);
 bool is_path(const scene *s);
 bool is_drawn(const scene *s);
-bool has_layers(const scene *s);
+bool is_unlit(const scene *s);
 /* Secondary rays are traced. */
 bool follows_rays(const scene *s);
 /* The depth buffer shows what is behind transparent solids. */
@@ -141,7 +141,7 @@ typedef struct needs_row {
 
 /* Whether a row of the group leaves c's parameter without effect. */
 bool needs_ask(const inert_case *c, param_group group);
-/* Whether the parameter needs light, and the integrator shows layers, which have none. */
+/* Whether the parameter needs light, and the integrator shows none. */
 bool needs_light(const inert_case *c);
 /* The table, for its test. */
 const needs_row *needs_rows(size_t *count);

@@ -71,9 +71,9 @@ bool is_drawn(const scene *s)
     return integrator_traits_of(&s->render)->drawn;
 }
 
-bool has_layers(const scene *s)
+bool is_unlit(const scene *s)
 {
-    return integrator_traits_of(&s->render)->layers;
+    return integrator_traits_of(&s->render)->unlit;
 }
 
 bool is_named(const inert_case *c, const char *name)
@@ -102,7 +102,7 @@ bool draws_through(const scene *s)
 bool nothing_passes(const scene *s)
 {
     const bool lit_through =
-        !is_drawn(s) && !has_layers(s) && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
+        !is_drawn(s) && !is_unlit(s) && s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 
@@ -212,7 +212,7 @@ bool shows_specular(const scene *s, const material *m)
 
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
-    return !has_layers(s) &&
+    return !is_unlit(s) &&
            (shows_specular(s, m) || (beams_light(s) && m->diffuse > 0.0 && has_color(m)) ||
             (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0 ||
                                        material_scattering(m, &s->render) > 0.0)));
@@ -220,7 +220,7 @@ bool is_lit_by_lamps(const scene *s, const material *m)
 
 bool shows_color(const scene *s, const material *m)
 {
-    if (has_layers(s))
+    if (is_unlit(s))
         return s->render.layer == LAYER_ALBEDO;
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
@@ -247,7 +247,7 @@ inert_remedy lamp_remedy(const scene *s)
 
 inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
-    if (has_layers(s))
+    if (is_unlit(s))
         return inert_set("render.layer=albedo");
     material coated = *m;
     coated.diffuse = 0.7;
@@ -300,7 +300,7 @@ bool nothing_lit(const inert_case *c)
 bool unpolarised(const inert_case *c)
 {
     const render_settings *r = &c->s->render;
-    const char *first = is_drawn(c->s) || has_layers(c->s)       ? "render.integrator=whitted and "
+    const char *first = is_drawn(c->s) || is_unlit(c->s)         ? "render.integrator=whitted and "
                         : r->weights == WEIGHTS_CONSTANT         ? "render.weights=fresnel and "
                         : r->transmission == TRANSMISSION_SIMPLE ? "render.transmission=refract and "
                                                                  : "";

@@ -91,14 +91,14 @@ bool unpassed(const inert_case *c)
 bool no_color(const inert_case *c)
 {
     const char *text =
-        has_layers(c->s) ? "the shown layer has no colours" : "this surface reflects no ambient or diffuse light";
+        is_unlit(c->s) ? "the shown layer has no colours" : "this surface reflects no ambient or diffuse light";
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
 /* A transparent solid also has a tint. */
 bool no_color_or_tint(const inert_case *c)
 {
-    const bool tints = !material_is_opaque(c->m) && !has_layers(c->s);
+    const bool tints = !material_is_opaque(c->m) && !is_unlit(c->s);
     return !tints ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
 }
 
@@ -276,7 +276,7 @@ bool one_color(const inert_case *c)
 
 static bool say_unseen(const inert_case *c)
 {
-    if (has_layers(c->s))
+    if (is_unlit(c->s))
         return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image hits %s first",
                          c->owner->name);
     int64_t highest = c->owner->priority;

@@ -256,7 +256,7 @@ bool unshaded(const inert_case *c)
     if (textured || is_lit_by_lamps(s, c->m) || may_have_face_materials(s, c->owner) ||
         (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;
-    if (has_layers(s))
+    if (is_unlit(s))
         return s->render.layer != LAYER_NORMAL &&
                inert_say(c, "no-normals", "set render.layer=normal", "the shown layer has no normals");
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);

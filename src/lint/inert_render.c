@@ -246,7 +246,7 @@ bool lens_unsampled(const inert_case *c)
     wide.camera.aperture = 1.0;
     if (camera_lens_is_sampled(&wide))
         return false;
-    if (is_drawn(c->s) || has_layers(c->s))
+    if (is_drawn(c->s) || is_unlit(c->s))
         return inert_say(c, "chief-rays", "set render.integrator=whitted and render.samples=16",
                          "this render.integrator uses only rays through the centre of the lens");
     return inert_say(c, "one-ray", is_path(c->s) ? "set render.paths=64" : "set render.samples=16",

@@ -20,7 +20,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         p->setting->camera.aperture = 0.0;
-        if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
+        if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->unlit)
             use_whitted(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */

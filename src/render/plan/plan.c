@@ -216,7 +216,7 @@ static status prepare_beams(const scene *s, plan *p, diagnostic *why)
 
 static status add_rain(const scene *s, plan *p, diagnostic *why)
 {
-    const bool traced = !integrator_traits_of(&s->render)->layers;
+    const bool traced = !integrator_traits_of(&s->render)->unlit;
     if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
         return STATUS_OK;
     p->rain = rain_create(&s->background, scene_to_sun(s), s->render.spectrum == SPECTRUM_SPECTRAL);

@@ -54,7 +54,7 @@ camera_frame camera_frame_level(const scene *s)
 image_tone camera_tone(const scene *s)
 {
     const struct camera *c = scene_camera(s);
-    if (integrator_traits_of(scene_settings(s))->layers)
+    if (integrator_traits_of(scene_settings(s))->unlit)
         return (image_tone){.curve = TONE_NONE};
     return (image_tone){.exposure = c->exposure, .curve = c->tone, .white = c->white};
 }
@@ -66,7 +66,7 @@ bool camera_lens_is_sampled(const scene *s)
     const int64_t rays = traits->by_chance                  ? r->paths
                          : r->spectrum == SPECTRUM_SPECTRAL ? r->samples * r->wavelengths
                                                             : r->samples;
-    return scene_camera(s)->aperture > 0.0 && rays > 1 && !traits->drawn && !traits->layers;
+    return scene_camera(s)->aperture > 0.0 && rays > 1 && !traits->drawn && !traits->unlit;
 }
 
 camera_frame camera_frame_of(const scene *s)

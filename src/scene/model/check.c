@@ -70,7 +70,7 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer renders RGB only: it does not support %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
-    if (integrator_traits_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
+    if (integrator_traits_of(&s->render)->unlit && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "layers contain no light: they do not support %s",
                         s->render.polarisation ? "polarisation" : "spectrum");

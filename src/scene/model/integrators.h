@@ -10,7 +10,7 @@
     X(WHITTED, whitted, .tree = true)  \
     X(PATH, path, .by_chance = true)   \
     X(ZBUFFER, zbuffer, .drawn = true) \
-    X(AOV, aov, .layers = true)
+    X(AOV, aov, .unlit = true, .layers = true)
 
 #define INTEGRATOR_NUMBER(name, word, ...) INTEGRATOR_##name,
 typedef enum integrator_rule { INTEGRATORS(INTEGRATOR_NUMBER) INTEGRATOR_COUNT } integrator_rule;
@@ -20,7 +20,8 @@ typedef struct integrator_traits {
     bool tree;      /* traces both branches at each interface, depending on render.lighting (Whitted 1980) */
     bool by_chance; /* traces random paths, render.paths per pixel, which sample the area of lights */
     bool drawn;     /* rasterises triangles into a depth buffer; traces no rays and no light paths */
-    bool layers;    /* writes named layers of the first hits of camera rays; no light transport */
+    bool unlit;     /* shows what camera rays hit, no light: lamps and tone mapping do not matter */
+    bool layers;    /* writes the named layers below */
 } integrator_traits;
 
 extern const char *const integrator_words[];

@@ -346,7 +346,7 @@ bool sheet_retards(const material *m)
 
 bool sheet_acts(const material *m, const render_settings *r)
 {
-    const bool transports = !integrator_traits_of(r)->drawn && !integrator_traits_of(r)->layers;
+    const bool transports = !integrator_traits_of(r)->drawn && !integrator_traits_of(r)->unlit;
     return transports && (sheet_is_polariser(m) || (r->polarisation && sheet_retards(m)));
 }
 

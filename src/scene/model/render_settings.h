@@ -117,14 +117,14 @@ static inline bool scene_has_constant_weights(const render_settings *r)
 static inline bool scene_has_soft_shadows(const render_settings *r)
 {
     const integrator_traits *traits = integrator_traits_of(r);
-    return r->soft_shadows && r->shadows != SHADOWS_OFF && !traits->by_chance && !traits->drawn && !traits->layers;
+    return r->soft_shadows && r->shadows != SHADOWS_OFF && !traits->by_chance && !traits->drawn && !traits->unlit;
 }
 
 /* Whether photons carry the light that mirrors and clear solids deflect; then radiance is basic, and shadows opaque. */
 static inline bool scene_has_caustics(const render_settings *r)
 {
     return r->caustics == CAUSTICS_PHOTONS && r->shadows != SHADOWS_OFF && !integrator_traits_of(r)->drawn &&
-           !integrator_traits_of(r)->layers;
+           !integrator_traits_of(r)->unlit;
 }
 
 /* Whether rays carry basic radiance, L / n^2. Only refraction changes solid angles: there is none under simple
