@@ -25,7 +25,7 @@ bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
 	@$(if $(bench_clang),$(MAKE) --no-print-directory CC=clang build=$(build)/by-clang $(build)/by-clang/cuvette)
 	CUVETTE='$(build)/cuvette' NOCOUNTERS='$(build)/nocounters/cuvette' CLANG='$(bench_clang)' experiments/bench.sh \
-	  frames solids lights slime processes rays paths rows
+	  frames outside solids lights slime processes rays paths rows
 
 # What the same bits everywhere cost (experiments/determinism.sh): the program without parts of that, in build/variants,
 # FILM-CONTRACT-COMPILER. Sums of the film fixed or float (render/plan/film.h); products and sums of the kernels
