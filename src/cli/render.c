@@ -16,7 +16,6 @@
 #include "report/report.h"
 #include "scene/file/shared.h"
 #include "scene/model/camera.h"
-#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -200,13 +199,11 @@ static void print_summary(const job_account *f, const outputs *files)
     const char *const written[] = {files->img, files->rays, files->time, files->cut, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     const double wall_s = job_account_wall_s(f);
-    char *depth = NULL;
-    (void)scene_get(s, "render.depth", &depth, NULL);
+    char depth[DEPTH_TEXT_MAX];
     printf("%s%lldx%lld pixels, depth %s: %llu rays in %.3f s (%.1f million per second), film %016llx",
-           f->complete ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height, depth ? depth : "",
-           (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
-           (unsigned long long)job_account_hash(f));
-    free(depth);
+           f->complete ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height,
+           depth_text(&s->render, depth), (unsigned long long)rays, wall_s,
+           wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0, (unsigned long long)job_account_hash(f));
     if (f->result->variance)
         printf(", rms noise %.4f", render_noise_rms(f->result));
     print_cut(f);

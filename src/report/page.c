@@ -7,7 +7,6 @@
 #include "report/svg.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
-#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <errno.h>
 #include <inttypes.h>
@@ -182,11 +181,9 @@ static status write_image(const page_content *page, const shared_texts *texts, F
 
 static void write_account(const page_content *page, const page_rays *rays, FILE *out)
 {
-    char *depth = NULL;
-    (void)scene_get(page->s, "render.depth", &depth, NULL);
+    char depth[DEPTH_TEXT_MAX];
     fprintf(out, "<p>%d × %d pixels, depth %s, film %016" PRIx64 ", Cuvette %s.</p>\n", page->rows.width,
-            page->rows.height, depth ? depth : "", page->film_hash, CUVETTE_VERSION);
-    free(depth);
+            page->rows.height, depth_text(&page->s->render, depth), page->film_hash, CUVETTE_VERSION);
     if (rays->beams)
         fprintf(out, "<h2>Rays of the beams</h2>\n<p>The %zu strongest of %zu segments.", rays->count, rays->traced);
     else

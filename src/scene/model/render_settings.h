@@ -3,8 +3,10 @@
 #pragma once
 
 #include "scene/model/integrators.h"
+#include <inttypes.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
 typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } transmission_rule;
@@ -82,6 +84,17 @@ static inline const integrator_traits *integrator_traits_of(const render_setting
 static inline bool traces_ray_trees(const render_settings *r)
 {
     return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
+}
+
+enum { DEPTH_TEXT_MAX = 24 };
+
+/* The depth as users write it, in text; needs no memory. */
+static inline const char *depth_text(const render_settings *r, char text[DEPTH_TEXT_MAX])
+{
+    if (r->depth == DEPTH_UNLIMITED)
+        return "unlimited";
+    snprintf(text, DEPTH_TEXT_MAX, "%" PRId64, r->depth);
+    return text;
 }
 
 /* Select the integrator to inspect a scene: whitted, with all branches of each ray; or zbuffer, a preview of

@@ -26,7 +26,8 @@ void row_put_axes(csv_buffer *line, const study *s, const scene *setting)
     const char *path;
     for (size_t i = 0; (path = study_grid_path(s, i)); i++) {
         char *value = NULL;
-        csv_text(line, scene_get(setting, path, &value, NULL) == STATUS_OK ? value : NULL);
+        line->failed |= scene_get(setting, path, &value, NULL) == STATUS_FAILURE; /* out of memory */
+        csv_text(line, value);
         free(value);
     }
 }
