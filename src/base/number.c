@@ -84,10 +84,20 @@ char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX])
     return text;
 }
 
+/* Whether the number is an integer that %.15g writes with all its digits, and not -0. */
+static bool is_plain_integer(double value)
+{
+    return fabs(value) < 1e15 && value == (double)(int64_t)value && !(value == 0.0 && signbit(value));
+}
+
 char *number_format(double value, char text[NUMBER_TEXT_MAX])
 {
     if (isnan(value) || isinf(value))
         return strcpy(text, isnan(value) ? "nan" : value < 0 ? "-inf" : "inf");
+    if (is_plain_integer(value)) { /* most parameters: at a tenth of the cost */
+        snprintf(text, NUMBER_TEXT_MAX, "%lld", (long long)value);
+        return text;
+    }
     /* 15 digits always survive in a normal double and 17 always identify it, so the first text that reads back is the
      * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
     for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {

@@ -96,7 +96,7 @@ static void default_values_are_not_part_of_an_identity(void **state)
         scene *s = NULL;
         meaning m = {0};
         assert_int_equal(scene_read(scenes[k], &s, NULL), STATUS_OK);
-        assert_int_equal(meaning_of_scene(&m, s, false), STATUS_OK);
+        assert_int_equal(meaning_of_scene(&m, s, false, NULL), STATUS_OK);
         for (size_t i = 0; i < m.count; i++) {
             param_place at;
             const char *name = m.items[i].name, *value = m.items[i].value;
@@ -124,7 +124,7 @@ static bool has_sampling(const fixture *f, const char *assignments)
     study *s = fixture_study(f, text);
     meaning m = {0};
     bool found = false;
-    assert_int_equal(meaning_of_scene(&m, s->base, false), STATUS_OK);
+    assert_int_equal(meaning_of_scene(&m, s->base, false, NULL), STATUS_OK);
     for (size_t i = 0; i < m.count; i++)
         found |= strcmp(m.items[i].name, "render.sampler") == 0 || strcmp(m.items[i].name, "render.filter") == 0 ||
                  strcmp(m.items[i].name, "render.light_sampling") == 0;
@@ -194,7 +194,7 @@ static void order_and_explicit_defaults_do_not_change_an_identity(void **state)
                                     "set: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
     assert_int_equal(s->identity[0], other->identity[0]);
     meaning message = {0};
-    assert_int_equal(meaning_of_scene(&message, s->base, false), STATUS_OK);
+    assert_int_equal(meaning_of_scene(&message, s->base, false, NULL), STATUS_OK);
     const uint64_t hash = meaning_hash(&message);
     const meaning_item first = message.items[0];
     message.items[0] = message.items[message.count - 1];

@@ -388,29 +388,49 @@ static bool is_in_use(const scene *s, const param_place *at)
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 
-/* Visits the rows of one object in one group of the table. */
-static status visit_rows(const scene *s, param_place at, param_group rows, param_place_visit *visit, void *context)
+/* A visit to places of a scene. */
+typedef struct place_tour {
+    const scene *s;
+    const param_defaults *but; /* places with these values are skipped; NULL: none */
+    param_place_visit *visit;
+    void *context;
+} place_tour;
+
+static bool is_skipped(const place_tour *tour, const param_place *at)
 {
+    return tour->but &&
+           param_defaults_hold(tour->but, at->row, (const char *)place_base(tour->s, at) + at->row->offset);
+}
+
+/* Visits the rows of one object in one group of the table. */
+static status visit_rows(const place_tour *tour, param_place at, param_group rows)
+{
+    const scene *s = tour->s;
     status code = STATUS_OK;
     for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
         at.row = param_at(i);
         if (at.row->group == rows && is_in_use(s, &at) &&
-            (at.object_group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)))
-            code = visit_one(s, &at, visit, context);
+            (at.object_group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)) && !is_skipped(tour, &at))
+            code = visit_one(s, &at, tour->visit, tour->context);
+    }
+    return code;
+}
+
+static status visit_group(const place_tour *tour, param_group group)
+{
+    status code = STATUS_OK;
+    param_place at = {.row = NULL, .object_group = group, .index = 0, .element = -1};
+    for (; at.index < param_place_group_size(tour->s, group) && code == STATUS_OK; at.index++) {
+        code = visit_rows(tour, at, group);
+        if (code == STATUS_OK && group == PARAM_SOLID)
+            code = visit_rows(tour, at, PARAM_MATERIAL);
     }
     return code;
 }
 
 status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context)
 {
-    status code = STATUS_OK;
-    param_place at = {.row = NULL, .object_group = group, .index = 0, .element = -1};
-    for (; at.index < param_place_group_size(s, group) && code == STATUS_OK; at.index++) {
-        code = visit_rows(s, at, group, visit, context);
-        if (code == STATUS_OK && group == PARAM_SOLID)
-            code = visit_rows(s, at, PARAM_MATERIAL, visit, context);
-    }
-    return code;
+    return visit_group(&(place_tour){.s = s, .visit = visit, .context = context}, group);
 }
 
 typedef struct path_visitor {
@@ -428,11 +448,17 @@ static status visit_path(void *context, const param_place *at, const char *value
     return code;
 }
 
-status scene_each_param(const scene *s, param_visit *visit, void *context)
+status scene_each_param_but(const scene *s, const param_defaults *but, param_visit *visit, void *context)
 {
     path_visitor v = {s, visit, context};
+    const place_tour tour = {s, but, visit_path, &v};
     status code = STATUS_OK;
     for (int g = 0; g < PARAM_GROUP_COUNT && code == STATUS_OK; g++)
-        code = param_place_each(s, (param_group)g, visit_path, &v);
+        code = visit_group(&tour, (param_group)g);
     return code;
+}
+
+status scene_each_param(const scene *s, param_visit *visit, void *context)
+{
+    return scene_each_param_but(s, NULL, visit, context);
 }

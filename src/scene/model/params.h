@@ -117,6 +117,11 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
 
+/* The defaults of all rows as values (scene/model/params_value.h). */
+typedef struct param_defaults param_defaults;
+/* Likewise, without the parameters that have these defaults. but: NULL for none. */
+status scene_each_param_but(const scene *s, const param_defaults *but, param_visit *visit, void *context);
+
 /* --- the target of a path: `lamp.position.x` refers to the row, the light and the element --- */
 
 typedef struct param_place {

@@ -417,7 +417,65 @@ char *param_default_text(const param *row)
     return canonical_text(row, row->fallback);
 }
 
+static const char *first_default(const param *row)
+{
+    return row->first_default ? row->first_default : row->fallback;
+}
+
 char *param_first_default_text(const param *row)
 {
-    return canonical_text(row, row->first_default ? row->first_default : row->fallback);
+    return canonical_text(row, first_default(row));
+}
+
+/* --- defaults as values --- */
+
+struct param_defaults {
+    size_t count;
+    param_value value[]; /* by row */
+};
+
+void param_first_defaults_destroy(param_defaults *old)
+{
+    for (size_t i = 0; old && i < old->count; i++)
+        if (param_at(i)->type == PARAM_PATH)
+            free(old->value[i].path);
+    free(old);
+}
+
+param_defaults *param_first_defaults_create(void)
+{
+    param_defaults *made = calloc(1, sizeof *made + param_count() * sizeof *made->value);
+    for (size_t i = 0; made && i < param_count(); i++) {
+        const param *row = param_at(i);
+        if (param_value_parse(row, -1, row->name, first_default(row), &made->value[i], NULL) != STATUS_OK) {
+            param_first_defaults_destroy(made);
+            return NULL;
+        }
+        made->count++;
+    }
+    return made;
+}
+
+/* Compares bits: 0 and -0 are different texts. */
+static bool same_numbers(const double *a, const double *b, size_t count)
+{
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+bool param_defaults_hold(const param_defaults *d, const param *row, const void *field)
+{
+    const param_value *value = &d->value[row - param_at(0)];
+    const number_list *list = field;
+    switch (row->type) {
+    case PARAM_INT:
+    case PARAM_CHOICE: return *(const int64_t *)field == value->integer;
+    case PARAM_REAL: return same_numbers(field, &value->real, 1);
+    case PARAM_VECTOR:
+    case PARAM_COLOR: return same_numbers(field, &value->vector.x, 3);
+    case PARAM_LIST:
+        return list->count == value->list.count && same_numbers(list->value, value->list.value, (size_t)list->count);
+    case PARAM_PATH: return strcmp(*(char *const *)field ? *(char *const *)field : "", value->path) == 0;
+    case PARAM_WORD: return strcmp(field, value->word) == 0;
+    }
+    return false;
 }

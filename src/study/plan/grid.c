@@ -40,19 +40,48 @@ static bool is_performance_only(const scene *s, const char *path)
     return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->performance_only;
 }
 
-static bool have_one_film(const scene *s, const study_point *a, const study_point *b)
+/* Points of an axis, in the order of their values that act on the film. */
+typedef struct film_order {
+    const study_point *points;
+    const bool *acts; /* of each value of a point: all points of an axis have the same paths */
+} film_order;
+
+static int compare_films(const film_order *o, size_t one, size_t two)
 {
-    for (size_t i = 0; i < a->count; i++)
-        if (strcmp(a->values[i], b->values[i]) != 0 && !is_performance_only(s, a->paths[i]))
-            return false;
-    return true;
+    const study_point *a = &o->points[one], *b = &o->points[two];
+    int order = 0;
+    for (size_t i = 0; i < a->count && order == 0; i++)
+        order = o->acts[i] ? strcmp(a->values[i], b->values[i]) : 0;
+    return order;
 }
 
-void grid_find_films(study_axis *axis, const scene *s)
+static int compare_points(const void *a, const void *b, void *context)
 {
-    for (size_t i = 0; i < axis->count; i++)
-        for (axis->points[i].film = 0; !have_one_film(s, &axis->points[i], &axis->points[axis->points[i].film]);)
-            axis->points[i].film++;
+    const size_t one = *(const size_t *)a, two = *(const size_t *)b;
+    const int order = compare_films(context, one, two);
+    return order ? order : (one > two) - (one < two);
+}
+
+status grid_find_films(study_axis *axis, const scene *s, diagnostic *why)
+{
+    const study_point *first = &axis->points[0];
+    size_t *sorted = malloc(axis->count * sizeof *sorted);
+    bool *acts = malloc(first->count * sizeof *acts + 1);
+    film_order by_film = {axis->points, acts};
+    const status code = sorted && acts ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < first->count; i++)
+        acts[i] = !is_performance_only(s, first->paths[i]);
+    for (size_t i = 0; code == STATUS_OK && i < axis->count; i++)
+        sorted[i] = i;
+    if (code == STATUS_OK)
+        qsort_r(sorted, axis->count, sizeof *sorted, compare_points, &by_film);
+    for (size_t i = 0; code == STATUS_OK && i < axis->count; i++) {
+        const bool same = i > 0 && compare_films(&by_film, sorted[i - 1], sorted[i]) == 0;
+        axis->points[sorted[i]].film = same ? axis->points[sorted[i - 1]].film : sorted[i];
+    }
+    free(acts);
+    free(sorted);
+    return code;
 }
 
 /* Applies the settings of a point, in order. */

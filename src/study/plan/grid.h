@@ -16,7 +16,7 @@ status grid_each_cell(const study *s, grid_visit *visit, void *context, diagnost
 status grid_check_cells(const study *s, diagnostic *why);
 
 /* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
-void grid_find_films(study_axis *axis, const scene *s);
+status grid_find_films(study_axis *axis, const scene *s, diagnostic *why);
 
 /* The scene of the cell's reference; image files are not loaded. */
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);

@@ -41,12 +41,7 @@ static status add_param(void *context, const char *path, const param *row, const
         return STATUS_OK;
     if ((state->without_performance && row->performance_only) || (row->by_chance && !state->by_chance))
         return STATUS_OK;
-    char *default_text = param_first_default_text(row);
-    status code = STATUS_FAILURE;
-    if (default_text)
-        code = strcmp(default_text, value) == 0 ? STATUS_OK : add(state->into, strdup(path), strdup(value));
-    free(default_text);
-    return code;
+    return add(state->into, strdup(path), strdup(value));
 }
 
 /* Every object is listed, including those with all parameters at their defaults. */
@@ -66,12 +61,22 @@ static status add_solid(meaning *m, const scene *s, const solid *owner)
     return STATUS_OK;
 }
 
-status meaning_of_scene(meaning *m, const scene *s, bool without_performance)
+/* Adds the parameters that do not have their first defaults. */
+static status add_params(meaning *m, const scene *s, bool without_performance, const param_defaults *first_defaults)
+{
+    visit_state state = {m, s, without_performance, integrator_traits_of(&s->render)->by_chance};
+    param_defaults *own = first_defaults ? NULL : param_first_defaults_create();
+    const param_defaults *but = first_defaults ? first_defaults : own;
+    const status code = but ? scene_each_param_but(s, but, add_param, &state) : STATUS_FAILURE;
+    param_first_defaults_destroy(own);
+    return code;
+}
+
+status meaning_of_scene(meaning *m, const scene *s, bool without_performance, const param_defaults *first_defaults)
 {
     static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE,  PARAM_LIGHT,
                                          PARAM_BEAM, PARAM_MATERIAL, PARAM_SOLID};
-    visit_state state = {m, s, without_performance, integrator_traits_of(&s->render)->by_chance};
-    TRY(scene_each_param(s, add_param, &state));
+    TRY(add_params(m, s, without_performance, first_defaults));
     TRY(add(m, strdup("the camera's direction"), strdup(s->camera.aimed ? "its target" : "its angles")));
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)
         TRY(add_objects(m, s, groups[i]));
@@ -186,7 +191,7 @@ static void hash_text(uint64_t *hash, const char *text)
 status reference_scene_hash(const scene *setting, uint64_t *hash)
 {
     meaning m = {0};
-    status code = meaning_of_scene(&m, setting, true);
+    status code = meaning_of_scene(&m, setting, true, NULL);
     const int64_t word = (int64_t)meaning_hash(&m);
     meaning_free(&m);
     *hash = hash_words(HASH_START, &word, 1);
@@ -227,6 +232,7 @@ typedef struct search {
     uint64_t *identity;
     bool loads;
     uint64_t files; /* hash of the files of the base, unless cells name different ones */
+    param_defaults *first_defaults;
 } search;
 
 static status find_one(void *context, const study *s, size_t cell, scene *setting, diagnostic *why)
@@ -239,7 +245,7 @@ static status find_one(void *context, const study *s, size_t cell, scene *settin
         files = HASH_START;
         TRY(identity_hash_files(&files, setting, why));
     }
-    const status code = meaning_of_scene(&m, setting, false);
+    const status code = meaning_of_scene(&m, setting, false, all->first_defaults);
     const int64_t words[] = {(int64_t)meaning_hash(&m), (int64_t)files};
     meaning_free(&m);
     if (code != STATUS_OK)
@@ -291,7 +297,9 @@ status identities_find(const study *s, uint64_t **out, diagnostic *why)
     if (!all.loads)
         TRY(identity_hash_files(&all.files, s->base, why));
     all.identity = calloc(study_cell_count(s), sizeof *all.identity);
-    status code = all.identity ? grid_each_cell(s, find_one, &all, why) : out_of_memory(why);
+    all.first_defaults = param_first_defaults_create();
+    status code = all.identity && all.first_defaults ? grid_each_cell(s, find_one, &all, why) : out_of_memory(why);
+    param_first_defaults_destroy(all.first_defaults);
     THEN(code, separate_equals(s, all.identity, why));
     if (code == STATUS_OK)
         *out = all.identity;

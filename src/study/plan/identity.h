@@ -9,6 +9,7 @@
  * change. Ownership: the caller frees the array of identities_find; meaning_free releases a meaning. */
 #pragma once
 
+#include "scene/model/params.h"
 #include "study/study.h"
 
 /* The identity of each cell, in the order of cells. The files of s->base must be loaded; if an axis names files, the
@@ -39,8 +40,8 @@ typedef struct meaning {
 } meaning;
 
 /* The meaning of a scene, with or without the parameters that affect only performance (param.performance_only).
- * STATUS_FAILURE if memory runs out. */
-status meaning_of_scene(meaning *m, const scene *s, bool without_performance);
+ * first_defaults: of all rows, for a caller with many scenes; NULL: made here. STATUS_FAILURE if memory runs out. */
+status meaning_of_scene(meaning *m, const scene *s, bool without_performance, const param_defaults *first_defaults);
 void meaning_free(meaning *m);
 
 /* A hash that does not depend on the order of the items. */

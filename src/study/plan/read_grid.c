@@ -289,8 +289,8 @@ static status read_axes(study *s, scene *target, const document *d, const node *
     for (size_t i = 0; i < grid->count; i++) {
         s->axis_count++;
         status code = read_axis(&s->axes[i], target, d, grid->items[i], why);
+        THEN(code, grid_find_films(&s->axes[i], target, why));
         if (code == STATUS_OK) {
-            grid_find_films(&s->axes[i], target);
             code = check_once(s, i, d, grid->items[i], why);
             if (code == STATUS_OK && grid->items[i]->count == 1)
                 code = comma_slip_note(s, s->axes[i].name, grid->items[i]->items[0],
