@@ -18,16 +18,18 @@
 #define CHANGED_VALUE 0.05f  /* a pixel changes if a channel changes by more than this fraction of the brightest */
 #define CHANGED_PIXELS 0.05  /* a depth is too small if a larger fraction of the pixels changes */
 #define SETTLED_PIXELS 0.002 /* deeper images count as equal if at most this fraction of the pixels changes */
-#define FIRST_IMAGES 3.0     /* budgets that the first images deeper than the scene's may take */
+#define FAINT_ACCEPTED (0.1 * LACK_ACCEPTED) /* faint rays may have this part of the throughput */
+#define FIRST_IMAGES 3.0                     /* budgets that images a little deeper than the scene's may take */
 enum { FIRST_LIMIT = 4, LEVELS_MAX = COUNTERS_DEPTH_MAX + 1 };
 
 /* Limits beyond the scene's that are tried in turn. */
-static const int deeper_by[] = {2, 5, 9, 14, 24};
+static const int deeper_by[] = {5, 14, 24};
 enum { STEPS = sizeof deeper_by / sizeof deeper_by[0] };
 
 typedef struct depth_search {
     const lint_input *input;
-    double budget; /* in rays */
+    double budget;    /* in rays */
+    bool drops_faint; /* faint rays are not traced: render.min_weight of the small images is not the scene's */
     probe_images images;
     probe_image at[LEVELS_MAX]; /* by depth limit */
     double rays[LEVELS_MAX];    /* by depth, of the last pass */
@@ -78,11 +80,10 @@ static double decay_at(const depth_search *s, int level)
                      : lack_decay(lack_cut(pixels, &s->at[level - 2]), lack_cut(pixels, &s->at[level]), 2);
 }
 
-/* The greatest limit up to `wanted` whose pass the budget allows, if the number of rays goes on growing or shrinking
- * as it did over the last two depths. Images a little deeper than the scene's decide most, and may take more. */
-static int affordable_limit(const depth_search *s, int wanted)
+/* The greatest limit up to `wanted` whose pass that budget allows, if the number of rays goes on growing or shrinking
+ * as it did over the last two depths. */
+static int limit_within(const depth_search *s, double budget, int wanted)
 {
-    const double budget = wanted <= s->depth + deeper_by[0] ? FIRST_IMAGES * s->budget : s->budget;
     const double growth =
         s->last >= 2 && s->rays[s->last - 2] > 0.0 ? sqrt(s->rays[s->last] / s->rays[s->last - 2]) : 2.0;
     double all = s->images.spent, next = s->rays[s->last];
@@ -94,21 +95,38 @@ static int affordable_limit(const depth_search *s, int wanted)
     return limit;
 }
 
-/* Finds the least limit, of those rendered, whose image equals the deeper ones and lacks little light, and makes it the
- * last. */
+/* Images a little deeper than the scene's decide most, and may take more. */
+static int affordable_limit(const depth_search *s, int wanted)
+{
+    const int little = s->depth + deeper_by[0] < wanted ? s->depth + deeper_by[0] : wanted,
+              least = limit_within(s, FIRST_IMAGES * s->budget, little), most = limit_within(s, s->budget, wanted);
+    return most > least ? most : least;
+}
+
+/* Whether the limits of the scene's own image cut nothing: then no deeper image differs. */
+static bool cuts_nothing(const depth_search *s)
+{
+    return s->last >= s->depth && lack_cut(pixels_of(s), &s->at[s->depth]) == 0.0;
+}
+
+/* Whether deeper images stopped changing and the deepest lacks little light. */
 static bool is_found(depth_search *s)
 {
     int still = 0;
-    s->settled = false;
-    for (int d = s->depth + 1; d <= s->last; d++) {
+    for (int d = s->depth + 1; d <= s->last && !s->settled; d++) {
         still = changed_fraction(s, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
-        s->settled |= still >= 2;
-        if (s->settled && lack_of(pixels_of(s), &s->at[d], &s->at[d]).unknown <= 0.5 * LACK_ACCEPTED) {
-            s->last = d;
-            return true;
-        }
+        s->settled = still >= 2;
     }
-    return false;
+    return s->settled && lack_of(pixels_of(s), &s->at[s->last], &s->at[s->last]).unknown <= 0.5 * LACK_ACCEPTED;
+}
+
+/* The greatest limit whose image shows nearly all light of its rays: where light is not lost, the faint ones carry all
+ * of it in the end. */
+static int known_limit(const depth_search *s, int limit)
+{
+    while (s->drops_faint && limit > 0 && s->at[limit].by_weight > FAINT_ACCEPTED)
+        limit--;
+    return limit;
 }
 
 static status search(depth_search *s, diagnostic *why)
@@ -116,8 +134,8 @@ static status search(depth_search *s, diagnostic *why)
     int limit = s->depth < FIRST_LIMIT ? s->depth : FIRST_LIMIT;
     for (int step = 0; step < STEPS;) {
         TRY(probe_images_render_levels(&s->images, limit, s->at, s->rays, why));
-        s->last = limit;
-        if (is_found(s))
+        s->last = known_limit(s, limit);
+        if (cuts_nothing(s) || is_found(s) || s->last < limit)
             break;
         while (step < STEPS && s->depth + deeper_by[step] <= s->last)
             step++;
@@ -230,7 +248,10 @@ status lint_depth(const lint_input *input, double rays, diagnostic *why)
 {
     if (input->probe->render.depth > COUNTERS_DEPTH_MAX)
         return STATUS_OK;
-    depth_search s = {.input = input, .budget = rays, .depth = (int)input->probe->render.depth};
+    depth_search s = {.input = input,
+                      .budget = rays,
+                      .drops_faint = input->probe->render.min_weight > input->original->render.min_weight,
+                      .depth = (int)input->probe->render.depth};
     status code = probe_images_begin(&s.images, input->probe, input->level) ? search(&s, why) : out_of_memory(why);
     if (code == STATUS_OK && !probe_images_overflowed(&s.images)) {
         if (s.last >= s.depth)

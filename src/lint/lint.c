@@ -111,6 +111,10 @@ static bool is_loaded(const scene *s)
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
+/* In a scene that traces the whole tree, the small images do not trace rays with less throughput, so that the number of
+ * rays does not grow by a factor with each depth; lint_depth sees how much light they carry. */
+#define PROBE_WEIGHT 1e-4
+
 /* Paths per pixel: few suffice to estimate the fraction that is cut. */
 enum { PROBE_PATHS = 2 };
 
@@ -130,7 +134,7 @@ static scene *small_copy(const scene *s, bool by_chance)
     if (by_chance)
         r->paths = PROBE_PATHS, r->error = 0.0;
     else
-        use_whitted(r);
+        use_whitted(r), r->min_weight = r->min_weight > 0.0 ? r->min_weight : PROBE_WEIGHT;
     if (r->accel != HIERARCHY_BVH) {
         r->accel = HIERARCHY_BVH;
         r->keep = 0;
