@@ -32,6 +32,8 @@ static void note_narrow_light(const job_account *a, const note_sink *taker)
     double narrow = (double)units[0];
     for (int k = 2; k < COUNTERS_FACTORS; k++)
         narrow += (double)units[k];
+    if (!(narrow > 0.0)) /* the film's sum takes longer than its hash */
+        return;
     const double one_percent = NOTED * COUNTERS_CUT_ONE * (r->img ? light_in(r->img) : 0.0), all = narrow;
     if (!(narrow > one_percent))
         return;
