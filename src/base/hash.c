@@ -1,6 +1,8 @@
 /* The FNV-1a hash with a final mix. */
 #include "base/hash.h"
 
+#include <string.h>
+
 static const uint64_t FNV_PRIME = UINT64_C(1099511628211); /* 64-bit FNV prime, draft-eastlake-fnv */
 
 /* Multiplication carries only upwards: without the shift, changes to the top bits of two words could cancel. */
@@ -10,10 +12,14 @@ static uint64_t step(uint64_t hash, uint64_t word)
     return hash ^ hash >> 32;
 }
 
-uint64_t hash_words(uint64_t hash, const int64_t *words, size_t count)
+uint64_t hash_words(uint64_t hash, const void *words, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        hash = step(hash, (uint64_t)words[i]);
+    const unsigned char *at = words;
+    for (size_t i = 0; i < count; i++, at += sizeof(uint64_t)) {
+        uint64_t word;
+        memcpy(&word, at, sizeof word);
+        hash = step(hash, word);
+    }
     return hash;
 }
 

@@ -7,7 +7,8 @@
 
 #define HASH_START UINT64_C(14695981039346656037)
 
-uint64_t hash_words(uint64_t hash, const int64_t *words, size_t count);
+/* words: their bits, 8 bytes each, of any type. */
+uint64_t hash_words(uint64_t hash, const void *words, size_t count);
 uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count);
 /* Numbers of `size` bytes each, lowest byte first on every machine. */
 uint64_t hash_numbers(uint64_t hash, const void *numbers, size_t count, size_t size);

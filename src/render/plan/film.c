@@ -152,14 +152,7 @@ void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t
 uint64_t film_hash(const film *f)
 {
     const int64_t size[2] = {f->width, f->height};
-    uint64_t hash = hash_words(HASH_START, size, 2);
-    int64_t words[512]; /* the bits of the sums, whatever their type */
-    for (size_t at = 0, length; at < values_of(f); at += length) {
-        length = values_of(f) - at < 512 ? values_of(f) - at : 512;
-        memcpy(words, f->sum + at, length * sizeof words[0]);
-        hash = hash_words(hash, words, length);
-    }
-    return hash_finish(hash);
+    return hash_finish(hash_words(hash_words(HASH_START, size, 2), f->sum, values_of(f)));
 }
 
 status film_image(const film *f, image **out, diagnostic *why)

@@ -34,8 +34,8 @@ char *param_default_text(const param *row);
 /* Likewise, the row's first default (param.first_default). */
 char *param_first_default_text(const param *row);
 
-/* The first defaults of all rows, parsed once for callers that compare many values. NULL if memory runs out; free it with
- * param_first_defaults_destroy. */
+/* The first defaults of all rows, parsed once for callers that compare many values. NULL if memory runs out; the caller
+ * destroys it. */
 param_defaults *param_first_defaults_create(void);
 void param_first_defaults_destroy(param_defaults *old);
 /* Whether the row's field has the row's default: exactly if param_value_text is the same for both. */
