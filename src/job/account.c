@@ -12,7 +12,7 @@ status job_account_begin(const scene *s, isa level, size_t frames, job_account *
                          .level = level,
                          .wall_s = calloc(frames + 1, sizeof(double)),
                          .cpu_s = calloc(frames + 1, sizeof(double)),
-                         .spent = {NAN, NAN, -1, -1, -1, NAN, NAN},
+                         .spent = {NAN, NAN, -1, -1, -1},
                          .noise = noise_unknown(),
                          .hardware = {-1, -1, -1, -1}};
     return out->wall_s && out->cpu_s ? STATUS_OK : out_of_memory(why);

@@ -2,6 +2,7 @@
 #include "measure/usage.h"
 
 #include "base/control_group.h"
+#include "measure/machine_noise.h"
 #include "measure/proc_file.h"
 #include <errno.h>
 #include <math.h>
@@ -173,12 +174,12 @@ void disturbances_report(double sample_s, void (*line)(void *context, const char
     report_build(&to);
     if (!(sample_s > 0.0))
         return;
-    usage before = usage_now();
+    const noise_reading before = noise_read("");
     struct timespec pause = {.tv_sec = (time_t)sample_s};
     pause.tv_nsec = (long)((sample_s - (double)pause.tv_sec) * 1e9);
     nanosleep(&pause, NULL);
-    usage passed = usage_since(&before);
-    double fraction = usage_others_fraction(&passed);
+    const noise_reading after = noise_read("");
+    const double fraction = noise_between(&before, &after).others_fraction;
     /* A smaller fraction is within one tick of /proc/stat: 10 ms of half a second on one unit. */
     if (!isnan(fraction) && fraction >= 0.02)
         report(&to, "others use %ld%% of the machine", lround(100.0 * fraction));

@@ -1,4 +1,4 @@
-/* Readings of resource usage from getrusage, /proc and clocks: of the process and machine, and of one thread. */
+/* Readings of resource usage from getrusage, /proc and clocks: of the process and of one thread. */
 #include "measure/usage.h"
 
 #include "measure/clock.h"
@@ -15,7 +15,7 @@ static int64_t difference(int64_t before, int64_t after)
     return before < 0 || after < 0 ? -1 : after - before;
 }
 
-/* ---- the process and the machine ---- */
+/* ---- the process ---- */
 
 /* VmHWM rather than ru_maxrss: the latter survives exec, so that a small program started by a large one would appear
  * large. */
@@ -30,22 +30,6 @@ static int64_t peak_rss_bytes(int64_t maxrss_kib)
     return kib < 0 ? -1 : kib * 1024;
 }
 
-static void read_machine(usage *u)
-{
-    /* a line is shorter than 128 bytes, so this holds over 500 units; the interrupts after them may be cut off */
-    enum { PROC_STAT_MAX = 65536 };
-    char text[PROC_STAT_MAX];
-    proc_stat machine;
-    long units = sysconf(_SC_NPROCESSORS_ONLN);
-    u->machine_busy_s = NAN;
-    u->machine_units = units > 0 ? (double)units : NAN;
-    if (!proc_file_read("", "/proc/stat", text, sizeof text))
-        return;
-    if (!proc_stat_parse(text, (double)sysconf(_SC_CLK_TCK), &machine))
-        return;
-    u->machine_busy_s = machine.busy_s;
-}
-
 usage usage_now(void)
 {
     usage u = {0};
@@ -58,7 +42,6 @@ usage usage_now(void)
         u.voluntary_switches = u.involuntary_switches = -1;
         u.peak_rss_bytes = peak_rss_bytes(-1);
     }
-    read_machine(&u);
     u.cpu_s = clock_process_cpu_s();
     u.wall_s = clock_wall_s();
     return u;
@@ -82,17 +65,7 @@ usage usage_since(const usage *before)
     u.cpu_s -= before->cpu_s;
     u.voluntary_switches = difference(before->voluntary_switches, u.voluntary_switches);
     u.involuntary_switches = difference(before->involuntary_switches, u.involuntary_switches);
-    u.machine_busy_s -= before->machine_busy_s;
     return u;
-}
-
-double usage_others_fraction(const usage *d)
-{
-    double capacity_s = d->wall_s * d->machine_units;
-    if (!(capacity_s > 0.0) || isnan(d->machine_busy_s) || isnan(d->cpu_s))
-        return NAN;
-    double fraction = (d->machine_busy_s - d->cpu_s) / capacity_s;
-    return fraction < 0.0 ? 0.0 : fraction > 1.0 ? 1.0 : fraction; /* rounding to 10 ms ticks can exceed either end */
 }
 
 /* ---- a thread ---- */

@@ -1,19 +1,16 @@
-/* Resources used by the process, the machine, a thread and the processor, as differences between readings before and
- * after the work; and what could disturb a measurement. Unknown values are NaN (reals) or -1 (integers), and are
- * written as NA. */
+/* Resources used by the process, a thread and the processor, as differences between readings before and after the work;
+ * and what could disturb a measurement. Unknown values are NaN (reals) or -1 (integers), and are written as NA. */
 #pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* ---- the process and the machine ---- */
+/* ---- the process ---- */
 
 typedef struct usage {
     double wall_s, cpu_s;   /* of the process; differences after usage_since */
     int64_t peak_rss_bytes; /* peak resident memory of the process so far; never a difference */
     int64_t voluntary_switches, involuntary_switches;
-    double machine_busy_s; /* CPU seconds of all processes since boot (/proc/stat) */
-    double machine_units;  /* processing units online */
 } usage;
 
 usage usage_now(void);
@@ -21,9 +18,6 @@ usage usage_now(void);
 void usage_reset_peak(void);
 /* The difference between an earlier reading and now. */
 usage usage_since(const usage *before);
-/* The fraction of the machine that other processes used during a difference, 0..1; NaN if unknown. /proc/stat ticks in
- * 10 ms, so the value is imprecise for intervals below 0.1 s. */
-double usage_others_fraction(const usage *difference);
 
 /* ---- a thread ---- */
 
