@@ -106,7 +106,7 @@ typedef struct cuvette_scene cuvette_scene;
 
 /* Creates an empty scene: every parameter at its default, no lights, no materials, no solids. */
 CUVETTE_API cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why);
-/* Reads a scene file (YAML, at most 64 MiB), or a shared scene: a PNG image that carries it, a page or a link. The
+/* Reads a scene file (YAML, at most 256 MiB), or a shared scene: a PNG image that carries it, a page or a link. The
  * files that it names are read at their first use. */
 CUVETTE_API cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why);
 /* Reads a scene from size bytes of text; diagnostics call the file `name`, and relative paths start in its folder. */

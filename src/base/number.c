@@ -84,20 +84,55 @@ char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX])
     return text;
 }
 
-/* Whether the number is an integer that %.15g writes with all its digits, and not -0. */
-static bool is_plain_integer(double value)
+/* Writes digits / 10^decimals, which has at most 15 digits and does not end with a 0 after the point. */
+static void put_decimal(bool negative, uint64_t digits, int decimals, char text[NUMBER_TEXT_MAX])
 {
-    return fabs(value) < 1e15 && value == (double)(int64_t)value && !(value == 0.0 && signbit(value));
+    char reversed[NUMBER_TEXT_MAX];
+    int count = 0;
+    for (; count < decimals; digits /= 10)
+        reversed[count++] = (char)('0' + digits % 10);
+    if (decimals > 0)
+        reversed[count++] = '.';
+    do
+        reversed[count++] = (char)('0' + digits % 10);
+    while ((digits /= 10) > 0);
+    if (negative)
+        *text++ = '-';
+    while (count > 0)
+        *text++ = reversed[--count];
+    *text = 0;
+}
+
+/* The fast case of number_format: a decimal with at most 15 digits that %g writes without an exponent. n / 10^k with
+ * both factors exact is correctly rounded, so that the text reads back as the value (Clinger, "How to Read Floating
+ * Point Numbers Accurately", 1990), and the smallest k has no trailing zeros. False: another case. */
+static bool format_decimal(double value, char text[NUMBER_TEXT_MAX])
+{
+    static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
+                                    1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
+    const double size = fabs(value);
+    if (!(size > 0.0))
+        return strcpy(text, signbit(value) ? "-0" : "0");
+    if (!(size >= 1e-4))
+        return false;
+    for (int k = 0; k < (int)(sizeof powers / sizeof *powers); k++) {
+        const double digits = rint(size * powers[k]);
+        if (!(digits < 1e15))
+            return false;
+        if (!(digits / powers[k] < size) && !(digits / powers[k] > size)) {
+            put_decimal(value < 0.0, (uint64_t)digits, k, text);
+            return true;
+        }
+    }
+    return false;
 }
 
 char *number_format(double value, char text[NUMBER_TEXT_MAX])
 {
     if (isnan(value) || isinf(value))
         return strcpy(text, isnan(value) ? "nan" : value < 0 ? "-inf" : "inf");
-    if (is_plain_integer(value)) { /* most parameters: at a tenth of the cost */
-        snprintf(text, NUMBER_TEXT_MAX, "%lld", (long long)value);
+    if (format_decimal(value, text))
         return text;
-    }
     /* 15 digits always survive in a normal double and 17 always identify it, so the first text that reads back is the
      * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
     for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {

@@ -118,14 +118,13 @@ static bool is_loaded(const scene *s)
 /* Paths per pixel: few suffice to estimate the fraction that is cut. */
 enum { PROBE_PATHS = 2 };
 
-/* The scene with a small, cheap image. A hierarchy that frames use again (render.keep) is the one that the first frame
- * would build; if render.accel is not bvh, the linter builds a hierarchy of its own. */
-static scene *small_copy(const scene *s, bool by_chance)
+/* The scene with a small, cheap image, for plans; it borrows everything but its settings. A hierarchy that frames use
+ * again (render.keep) is the one that the first frame would build; if render.accel is not bvh, the linter builds a
+ * hierarchy of its own. */
+static scene small_view(const scene *s, bool by_chance)
 {
-    scene *copy = scene_clone(s);
-    if (!copy)
-        return NULL;
-    render_settings *r = &copy->render;
+    scene view = *s;
+    render_settings *r = &view.render;
     shrink(r, has_meshes(s) ? PROBE_PIXELS_MESHES : PROBE_PIXELS);
     r->samples = 1;
     r->spectrum = SPECTRUM_RGB;
@@ -139,19 +138,16 @@ static scene *small_copy(const scene *s, bool by_chance)
         r->accel = HIERARCHY_BVH;
         r->keep = 0;
     }
-    return copy;
+    return view;
 }
 
 /* If the plan fails, there is no note: the frame will report the error. */
 static status lint_paths(const scene *s, isa level, const note_sink *taker, diagnostic *why)
 {
-    scene *copy = small_copy(s, true);
+    const scene view = small_view(s, true);
     lint_input input = {.original = s, .level = level, .taker = taker};
-    status code = copy ? STATUS_OK : out_of_memory(why);
-    if (copy && plan_build(copy, &input.probe, NULL) == STATUS_OK)
-        code = lint_path_depth(&input, why);
+    const status code = plan_build(&view, &input.probe, NULL) == STATUS_OK ? lint_path_depth(&input, why) : STATUS_OK;
     plan_destroy(input.probe);
-    scene_destroy(copy);
     return code;
 }
 
@@ -171,14 +167,13 @@ static status lint_cut_light(const lint_input *input, diagnostic *why)
 
 static status lint_planned(const scene *s, isa level, const note_sink *taker, diagnostic *why)
 {
-    scene *copy = small_copy(s, false);
+    const scene view = small_view(s, false);
     lint_input input = {.original = s, .level = level, .taker = taker};
-    status code = copy ? plan_build(copy, &input.probe, why) : out_of_memory(why);
+    status code = plan_build(&view, &input.probe, why);
     THEN(code, lint_neighbours(&input, why));
     if (code == STATUS_OK && !lint_camera(&input))
         code = lint_cut_light(&input, why);
     plan_destroy(input.probe);
-    scene_destroy(copy);
     return code;
 }
 

@@ -181,6 +181,17 @@ static void reals_are_formatted_shortest(void **state)
         {NAN, "nan"},
         {-NAN, "nan"},
         {9007199254740993.0, "9007199254740992"},
+        {1e-4, "0.0001"},
+        {0.00012345, "0.00012345"},
+        {9.9999999999999e-5, "9.9999999999999e-05"},
+        {0.1, "0.1"},
+        {-0.000123456789012345, "-0.000123456789012345"},
+        {1200, "1200"},
+        {1200.5, "1200.5"},
+        {99999999999999.9, "99999999999999.9"},
+        {999999999999999, "999999999999999"},
+        {999999999999999.9, "999999999999999.9"},
+        {100000000000000.5, "100000000000000.5"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[NUMBER_TEXT_MAX];
@@ -203,6 +214,26 @@ static void formatted_reals_read_back(void **state)
             assert_true(number_parse_real(number_format(value, text), &back));
             assert_memory_equal(&value, &back, sizeof value);
         }
+    }
+}
+
+/* Decimals with up to 15 digits have a path of their own: the text is that of %.15g. */
+static void short_decimals_are_formatted_as_by_printf(void **state)
+{
+    (void)state;
+    uint64_t bits = 88172645463325252;
+    for (int i = 0; i < 20000; i++) {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        static const double powers[] = {1, 10, 100, 1e3, 1e4, 1e6, 1e9, 1e12, 1e15, 1e18};
+        const double value =
+            ((double)(bits >> (14 + i % 50)) - 1000.0) / powers[bits % (sizeof powers / sizeof *powers)];
+        char text[NUMBER_TEXT_MAX], expected[NUMBER_TEXT_MAX];
+        snprintf(expected, sizeof expected, "%.15g", value);
+        double back;
+        if (number_parse_real(expected, &back) && memcmp(&back, &value, sizeof back) == 0)
+            assert_string_equal(number_format(value, text), expected);
     }
 }
 
@@ -405,6 +436,7 @@ int main(void)
         cmocka_unit_test(integers_are_parsed),
         cmocka_unit_test(reals_are_formatted_shortest),
         cmocka_unit_test(formatted_reals_read_back),
+        cmocka_unit_test(short_decimals_are_formatted_as_by_printf),
         cmocka_unit_test(digits_are_cut_by_the_uncertainty),
         cmocka_unit_test(numbers_ignore_the_locale),
         cmocka_unit_test(distances_are_optimal_string_alignments),

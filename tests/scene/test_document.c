@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "base/budget.h"
 #include "scene/file/document.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,12 +102,32 @@ static void size_and_number_of_values_are_limited(void **state)
     assert_int_equal(document_root(d)->count, 100000);
     document_destroy(d);
     free(some);
-    char *many = repeat("[", "0,", (1 << 21) - 1, "0]"); /* with the list itself: one too many */
-    expect_error(many, strlen(many), 1, 1 << 22);
+    expect_error("a: 1\n", (256 << 20) + 1, 1, 1); /* the text is not read */
+    if (!getenv("CHECK"))                          /* what follows needs 1.2 GiB */
+        return;
+    char *many = repeat("[", "0,", (1 << 24) - 1, "0]"); /* with the list itself: one too many */
+    expect_error(many, strlen(many), 1, 1 << 25);
     free(many);
-    char *large = repeat("#", "x", 64 << 20, "\na: 1\n");
-    expect_error(large, strlen(large), 1, 1);
-    free(large);
+}
+
+/* The tree is refused before it takes more memory than the budget leaves. */
+static void the_tree_keeps_the_memory_budget(void **state)
+{
+    (void)state;
+    char *many = repeat("[", "0,", 999999, "0]");
+    memory_budget_set(1 << 20);
+    document *d;
+    diagnostic why = {.what = ""};
+    assert_int_equal(document_parse("many.yaml", many, strlen(many), &d, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "many.yaml needs about"));
+    assert_null(d);
+    memory_budget_set(0);
+    assert_int_equal(document_parse("many.yaml", many, strlen(many), &d, &why), STATUS_OK);
+    assert_int_equal(document_root(d)->count, 1000000);
+    assert_string_equal(document_root(d)->items[999999]->text, "0");
+    assert_int_equal(document_root(d)->items[999999]->column, 2000000);
+    document_destroy(d);
+    free(many);
 }
 
 static void cyclic_or_ambiguous_yaml_is_refused(void **state)
@@ -241,6 +262,7 @@ int main(void)
         cmocka_unit_test(any_root_and_line_ending_are_read),
         cmocka_unit_test(nesting_is_limited_to_sixteen_levels),
         cmocka_unit_test(size_and_number_of_values_are_limited),
+        cmocka_unit_test(the_tree_keeps_the_memory_budget),
         cmocka_unit_test(cyclic_or_ambiguous_yaml_is_refused),
         cmocka_unit_test(an_unknown_key_is_reported_with_the_nearest_word),
         cmocka_unit_test(the_remedy_for_an_unknown_key_suggests_the_right_word),

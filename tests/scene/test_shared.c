@@ -9,9 +9,11 @@
 #include "base/text.h"
 #include "image/image.h"
 #include "scene/file/shared.h"
+#include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "scene/model/work.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -213,6 +215,32 @@ static void damaged_links_are_refused(void **state)
     scene_destroy(s);
 }
 
+/* A text of many solids is not written to its end if it is too long. */
+static void the_text_is_bounded(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {30000, 40000, 60000}; /* a solid has at least 26 bytes */
+    scene *s = read_file(ROD);
+    for (size_t i = 0, n = 0; n < sizeof counts / sizeof *counts; n++) {
+        for (; i < counts[n]; i++) {
+            char name[16];
+            snprintf(name, sizeof name, "s%zu", i);
+            assert_int_equal(scene_add_solid(s, name, SHAPE_SPHERE, NULL, NULL), STATUS_OK);
+        }
+        char *text;
+        diagnostic why = {.what = ""};
+        const status code = shared_scene_text(s, &text, &why);
+        assert_int_equal(code, n == 0 ? STATUS_OK : STATUS_BAD_INPUT);
+        if (n == 0)
+            assert_non_null(strstr(text, "  s29999:\n    shape: sphere\n"));
+        else
+            assert_string_equal(why.what, "a shared scene can have at most 1048576 bytes of text");
+        assert_true(n == 0 || !text);
+        free(text);
+    }
+    scene_destroy(s);
+}
+
 /* 64 MiB of spaces compress to 65 kB; no more than a MiB of them is ever expanded. */
 static void a_bomb_is_refused(void **state)
 {
@@ -302,6 +330,7 @@ int main(void)
         cmocka_unit_test(arrays_of_a_program_are_refused),
         cmocka_unit_test(triangles_are_planned_for_each_generator),
         cmocka_unit_test(damaged_links_are_refused),
+        cmocka_unit_test(the_text_is_bounded),
         cmocka_unit_test(a_bomb_is_refused),
         cmocka_unit_test(a_png_without_a_scene_says_so),
         cmocka_unit_test(a_chunk_longer_than_the_file_takes_no_memory),

@@ -158,8 +158,8 @@ static bool make_curves(layered_plan *p, const int *shading_class)
     return true;
 }
 
-static bool fill(const render_settings *r, const material *const *materials, const index_law *laws, const double *ior,
-                 const int *shading_class, layered_plan *p)
+static bool fill(const render_settings *r, const material *const *materials, const index_law *const *laws,
+                 const double *ior, const int *shading_class, layered_plan *p)
 {
     p->surface = calloc(p->priority_indices, sizeof *p->surface);
     p->surfaces = calloc(p->priority_indices, sizeof *p->surfaces);
@@ -173,7 +173,7 @@ static bool fill(const render_settings *r, const material *const *materials, con
             continue;
         p->surfaces[i] = (layered_surface){.film = {complex_of(m->film_ior, 0.0), m->film_thickness_nm},
                                            .opaque = material_is_opaque(m),
-                                           .law = laws[i],
+                                           .law = *laws[i],
                                            .m = m};
         p->surface[i] = &p->surfaces[i];
     }
@@ -181,7 +181,7 @@ static bool fill(const render_settings *r, const material *const *materials, con
     return r->spectrum == SPECTRUM_SPECTRAL || make_curves(p, shading_class);
 }
 
-bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *laws,
+bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *const *laws,
                          const double *ior, const int *shading_class, size_t priority_indices, layered_plan **out)
 {
     bool any = false;

@@ -57,7 +57,7 @@ typedef struct layered_plan {
 /* By priority index, [0] for the surrounding medium: materials ([0] is NULL), their dispersion laws, their refractive
  * indices at render.lambda_nm, and their shading classes (plan.h). Sets *out to NULL if no surface is layered. Returns
  * false when out of memory. */
-bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *laws,
+bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *const *laws,
                          const double *ior, const int *shading_class, size_t priority_indices, layered_plan **out);
 void layered_plan_destroy(layered_plan *p);
 

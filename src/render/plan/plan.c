@@ -277,8 +277,9 @@ static bool add_roughness(const scene *s, plan *p, const material *m)
 }
 
 /* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
-static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
 {
+    shading_material *shared[SCENE_MATERIALS_MAX] = {NULL};
     const size_t priority_indices = (size_t)p->geometry->region_count + 1;
     p->materials = large_calloc(priority_indices, sizeof *p->materials);
     p->ior = large_calloc(priority_indices, sizeof *p->ior);
@@ -290,12 +291,12 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
         return out_of_memory(why);
     for (size_t r = 0; r < priority_indices; r++) {
         const int solid_index = p->geometry->regions[r].solid;
-        p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
-        p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
+        p->laws[r] = &p->solid_laws[solid_index < 0 ? (int)s->solid_count : solid_index];
+        p->ior[r] = index_law_at(p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
             continue;
         p->materials[r] = material_of(s, p, solid_index);
-        if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], &p->shading_materials[r]))
+        if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], shared, &p->shading_materials[r]))
             return out_of_memory(why);
         for (int k = 0; k < p->shading_materials[r].count; k++)
             if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
@@ -375,17 +376,17 @@ static status place_camera(const scene *s, plan *p, diagnostic *why)
 status plan_build(const scene *s, plan **out, diagnostic *why)
 {
     plan *p = calloc(1, sizeof *p);
-    index_law *laws = calloc(s->solid_count + 1, sizeof *laws);
-    status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
+    if (p)
+        p->solid_laws = calloc(s->solid_count + 1, sizeof *p->solid_laws);
+    status code = p && p->solid_laws ? laws_of(s, p->solid_laws, why) : out_of_memory(why);
     if (code == STATUS_OK)
         p->basic = scene_has_basic_radiance(&s->render);
-    THEN(code, build_geometry(s, laws, p, why));
-    THEN(code, fill_priority_indices(s, laws, p, why));
+    THEN(code, build_geometry(s, p->solid_laws, p, why));
+    THEN(code, fill_priority_indices(s, p, why));
     THEN(code, prepare_lights(s, p, why));
     THEN(code, prepare_beams(s, p, why));
     THEN(code, add_rain(s, p, why));
     THEN(code, place_camera(s, p, why));
-    free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
         return code;
@@ -417,7 +418,8 @@ void plan_destroy(plan *p)
     if (!p)
         return;
     for (int r = 0; p->shading_materials && r <= p->geometry->region_count; r++)
-        free(p->shading_materials[r].mat);
+        if (!p->shading_materials[r].borrowed)
+            free(p->shading_materials[r].mat);
     free(p->shading_materials);
     free(p->shading_class);
     scene_geometry_destroy(p->geometry);
@@ -431,6 +433,7 @@ void plan_destroy(plan *p)
     free(p->mirrors);
     free(p->ior);
     free(p->laws);
+    free(p->solid_laws);
     free(p->absorption);
     free(p->lights);
     free(p->beams);

@@ -54,6 +54,7 @@ typedef struct scatter_plan {
 typedef struct region_materials {
     int count;
     shading_material *mat;
+    bool borrowed; /* mat belongs to another region of the same material */
     shading_rule shading;
 } region_materials;
 
@@ -68,12 +69,13 @@ typedef struct plan {
     mesh_report meshes;
     material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
     double *ior;       /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */
-    index_law *laws;   /* by priority index: the source of ior */
-    vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
-    spectra *spectral; /* for a spectral film, else NULL */
-    layered_plan *layered;    /* metals and thin films; NULL if there are none */
-    bool polarised_shadows;   /* some lamp is polarised, and shadow rays may pass through sheets */
-    region_sheet *sheets;     /* by priority index: polarisers and wave plates; NULL if there are none */
+    index_law *solid_laws;  /* by solid, then the surrounding medium's */
+    const index_law **laws; /* by priority index: the source of ior; in solid_laws */
+    vec3 *absorption;       /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
+    spectra *spectral;      /* for a spectral film, else NULL */
+    layered_plan *layered;  /* metals and thin films; NULL if there are none */
+    bool polarised_shadows; /* some lamp is polarised, and shadow rays may pass through sheets */
+    region_sheet *sheets;   /* by priority index: polarisers and wave plates; NULL if there are none */
     optical_medium *crystals; /* by priority index; NULL if there are none */
     scatter_plan *scatter;    /* media that scatter; NULL if there are none */
     bool rough;               /* some surfaces are rough: see render/shade/rough.h */
@@ -116,8 +118,10 @@ bool plan_is_plain(const plan *p, int priority_index);
 /* Fills p->shading_class from the shading materials. */
 bool plan_find_shading_classes(plan *p);
 
-/* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface. */
-bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out);
+/* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface. A
+ * solid with an unchanged material borrows them from an earlier region: shared is by material, NULL at first. */
+bool region_materials_make(const scene *s, const solid *owner, const material *surface, shading_material **shared,
+                           region_materials *out);
 /* The fraction of a shadow ray that a solid's surface transmits: sets *least to the minimum over its faces, and
  * *by_slot to the fraction per slot if faces differ, else to NULL; the caller frees *by_slot. */
 bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot);

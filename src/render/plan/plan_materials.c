@@ -18,14 +18,29 @@ static int number_of(const scene *s, const solid *owner, const material *named)
                                                 : (int)(s->material_count + (size_t)(owner - s->solids)) + 1;
 }
 
-bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out)
+/* Whether the solid has its material as the scene declares it. */
+static bool has_plain_material(const scene *s, const solid *owner, const material *surface)
+{
+    return owner->material_index >= 0 && surface == &owner->surface &&
+           memcmp(surface, &s->materials[owner->material_index].value, sizeof *surface) == 0;
+}
+
+bool region_materials_make(const scene *s, const solid *owner, const material *surface, shading_material **shared,
+                           region_materials *out)
 {
     const int slots = face_material_slots(s, owner);
+    const bool plain = slots == 0 && has_plain_material(s, owner, surface);
     out->shading = (shading_rule)owner->shading;
     out->count = slots > 0 ? slots : 1;
+    if (plain && (out->mat = shared[owner->material_index])) {
+        out->borrowed = true;
+        return true;
+    }
     out->mat = calloc((size_t)out->count, sizeof *out->mat);
     if (!out->mat)
         return false;
+    if (plain)
+        shared[owner->material_index] = out->mat;
     out->mat[0] = shading_material_of_solid(s, surface);
     out->mat[0].number = number_of(s, owner, NULL);
     for (int slot = 0; slot < slots; slot++) {
@@ -67,7 +82,7 @@ typedef struct plain_region {
 
 static int compare_materials(const plain_region *a, const plain_region *b)
 {
-    const int order = memcmp(&a->mat->surface, &b->mat->surface, sizeof a->mat->surface);
+    const int order = a->mat == b->mat ? 0 : memcmp(&a->mat->surface, &b->mat->surface, sizeof a->mat->surface);
     return order ? order : (int)a->opaque - (int)b->opaque;
 }
 

@@ -152,7 +152,7 @@ double line_table_density(const line_table *t, int64_t wavelength)
 typedef struct upsampled_scene {
     const scene *s;
     const material *const *materials;
-    const index_law *laws;
+    const index_law *const *laws;
     upsampled_spectrum sky, horizon, ambient, basis[SKY_BASIS_COUNT];
     upsampled_spectrum *color, *checker_color, *light; /* by priority index, by priority index, by light */
 } upsampled_scene;
@@ -207,7 +207,7 @@ static spectral_row row_at(const upsampled_scene *l, double lambda_nm, double de
 
 static region_spectrum region_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
 {
-    region_spectrum b = {.index = index_law_at(&l->laws[priority_index], lambda_nm)};
+    region_spectrum b = {.index = index_law_at(l->laws[priority_index], lambda_nm)};
     if (!l->materials[priority_index]) {
         b.absorption = surrounding_absorption_at(&l->s->background, lambda_nm) * l->s->render.unit_m;
         return b;
@@ -297,7 +297,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
     return true;
 }
 
-spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws,
+spectra *spectra_create(const scene *s, const material *const *materials, const index_law *const *laws,
                         size_t priority_indices)
 {
     upsampled_scene l = {.s = s, .materials = materials, .laws = laws};

@@ -82,7 +82,7 @@ typedef struct spectra {
 
 /* laws, materials: by priority index, materials[0] is NULL; priority_indices is their length, including that entry.
  * NULL when out of memory. */
-spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws,
+spectra *spectra_create(const scene *s, const material *const *materials, const index_law *const *laws,
                         size_t priority_indices);
 void spectra_destroy(spectra *p);
 

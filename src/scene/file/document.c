@@ -1,6 +1,7 @@
 /* Builds the tree of a YAML file from libyaml's events, reports its errors as diagnostics, and answers queries. */
 #include "scene/file/document.h"
 #include "base/array.h"
+#include "base/budget.h"
 #include "base/file.h"
 #include "base/status.h"
 #include "scene/model/names.h"
@@ -18,6 +19,9 @@ typedef struct event_reader {
     yaml_parser_t parser;
     const char *name, *text; /* the name and the content of the file */
     size_t size, node_count;
+    document *tree; /* the result */
+    node **stack;   /* entries of lists and maps that are not complete yet */
+    size_t stack_count, stack_room;
     diagnostic *why;
 } event_reader;
 
@@ -103,70 +107,76 @@ static status events_next(event_reader *r, yaml_event_t *event)
 
 /* --- the tree --- */
 
-enum { SIZE_LIMIT = 64 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 21 };
+/* A value takes sizeof(node) bytes, its text and its place in a list of its parent, 8 to 16 bytes: a file that keeps
+ * the limits needs at most 1.3 GiB. */
+enum { SIZE_LIMIT = 256 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 24 };
+
+/* Memory is reserved in blocks, each at least as large as all before it up to BLOCK_MAX, and released as a whole. */
+enum { BLOCK_MIN = 4096, BLOCK_MAX = 16 << 20 };
+
+typedef struct block {
+    struct block *before;
+    size_t size, used; /* bytes after this head */
+} block;
 
 struct document {
     char *name;
     node *root;
+    block *newest;
+    size_t reserved; /* bytes of all blocks */
 };
 
-static void node_destroy(node *n)
+static status add_block(event_reader *r, size_t least)
 {
-    if (!n)
-        return;
-    for (size_t i = 0; i < n->count; i++) {
-        node_destroy(n->items[i]);
-        if (n->keys)
-            node_destroy(n->keys[i]);
-    }
-    free(n->items);
-    free(n->keys);
-    free(n->text);
-    free(n);
-}
-
-static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
-{
-    if (++r->node_count > NODE_LIMIT)
-        return events_error(r, mark, "make the file smaller", "the file has more than 2097152 values");
-    node *n = calloc(1, sizeof *n);
-    if (!n)
+    document *d = r->tree;
+    size_t size = d->reserved < BLOCK_MIN ? BLOCK_MIN : d->reserved < BLOCK_MAX ? d->reserved : BLOCK_MAX;
+    if (size < least)
+        size = least;
+    TRY(memory_budget_check(size, "make the file smaller", r->why, "%.150s", r->name));
+    block *new = malloc(sizeof *new + size);
+    if (!new)
         return out_of_memory(r->why);
-    n->kind = kind;
-    n->line = (long)mark.line + 1;
-    n->column = (long)mark.column + 1;
-    *out = n;
+    *new = (block){.before = d->newest, .size = size};
+    d->newest = new;
+    d->reserved += size;
     return STATUS_OK;
 }
 
-/* Appends value, and key if the node is a map. On failure the caller still owns both. */
-static status node_append(event_reader *r, node *parent, node *key, node *value)
+/* Memory of the document, aligned for pointers. */
+static status reserve(event_reader *r, size_t bytes, void **out)
 {
-    size_t count = parent->count;
-    if (!room_for_one(&parent->items, count, sizeof *parent->items) ||
-        (key && !room_for_one(&parent->keys, count, sizeof *parent->keys)))
-        return out_of_memory(r->why);
-    parent->items[count] = value;
-    if (key)
-        parent->keys[count] = key;
-    parent->count++;
+    bytes = (bytes + sizeof(void *) - 1) / sizeof(void *) * sizeof(void *);
+    const block *b = r->tree->newest;
+    if (!b || b->size - b->used < bytes)
+        TRY(add_block(r, bytes));
+    block *newest = r->tree->newest;
+    *out = (char *)(newest + 1) + newest->used;
+    newest->used += bytes;
+    return STATUS_OK;
+}
+
+/* extra: bytes for the text that follows the node. */
+static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, size_t extra, node **out)
+{
+    if (++r->node_count > NODE_LIMIT)
+        return events_error(r, mark, "make the file smaller", "the file has more than 16777216 values");
+    void *memory;
+    TRY(reserve(r, sizeof(node) + extra, &memory));
+    *out = memory;
+    **out = (node){.kind = kind, .line = (unsigned)mark.line + 1, .column = (unsigned)mark.column + 1};
     return STATUS_OK;
 }
 
 static status read_scalar(event_reader *r, const yaml_event_t *event, node **out)
 {
     const char *value = (const char *)event->data.scalar.value;
-    size_t length = event->data.scalar.length;
+    const size_t length = event->data.scalar.length;
     if (memchr(value, 0, length))
         return events_error(r, event->start_mark, "remove it", "a text contains a NUL character");
     node *n = NULL;
-    TRY(node_create(r, NODE_SCALAR, event->start_mark, &n));
+    TRY(node_create(r, NODE_SCALAR, event->start_mark, length + 1, &n));
     n->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
-    n->text = strdup(value);
-    if (!n->text) {
-        node_destroy(n);
-        return out_of_memory(r->why);
-    }
+    n->text = memcpy(n + 1, value, length + 1);
     *out = n;
     return STATUS_OK;
 }
@@ -181,9 +191,20 @@ static int compare_keys(const void *a, const void *b)
                               : (x->column > y->column) - (x->column < y->column);
 }
 
+/* Whether each pair of keys differs; only for short maps, because it compares all pairs. */
+static bool all_differ(const node *map)
+{
+    for (size_t i = 1; i < map->count; i++)
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(map->keys[i]->text, map->keys[k]->text) == 0)
+                return false;
+    return true;
+}
+
 static status check_unique_keys(event_reader *r, const node *map)
 {
-    if (map->count < 2)
+    enum { SHORT = 12 };
+    if (map->count <= SHORT && all_differ(map))
         return STATUS_OK;
     node **sorted = malloc(map->count * sizeof(node *));
     if (!sorted)
@@ -194,8 +215,9 @@ static status check_unique_keys(event_reader *r, const node *map)
     for (size_t i = 1; i < map->count && code == STATUS_OK; i++) {
         if (strcmp(sorted[i - 1]->text, sorted[i]->text) == 0) {
             diagnostic_locate(r->why, r->name, sorted[i]->line, sorted[i]->column);
-            code = diagnose(r->why, STATUS_BAD_INPUT, "keep one of the two",
-                            "duplicate key '%.80s', first used on line %ld", sorted[i]->text, sorted[i - 1]->line);
+            code =
+                diagnose(r->why, STATUS_BAD_INPUT, "keep one of the two",
+                         "duplicate key '%.80s', first used on line %ld", sorted[i]->text, (long)sorted[i - 1]->line);
         }
     }
     free(sorted);
@@ -212,53 +234,71 @@ static status read_key(event_reader *r, yaml_event_t *event, node **key)
     return read_scalar(r, event, key);
 }
 
-/* Reads entries up to the end of the list or map. On failure *n has the entries read so far. */
+/* Puts a node on the stack of entries whose list or map is not complete yet. */
+static status push(event_reader *r, node *entry)
+{
+    if (!GROW(r->stack, r->stack_room, r->stack_count + 1))
+        return out_of_memory(r->why);
+    r->stack[r->stack_count++] = entry;
+    return STATUS_OK;
+}
+
+/* Makes the entries above `base` on the stack, keys and values in turn for a map, those of the node. */
+static status adopt(event_reader *r, size_t base, node *n)
+{
+    const size_t step = n->kind == NODE_MAP ? 2 : 1, entries = r->stack_count - base;
+    void *memory = NULL;
+    if (entries > 0)
+        TRY(reserve(r, entries * sizeof(node *), &memory));
+    n->count = entries / step;
+    n->items = memory;
+    n->keys = step == 2 && memory ? n->items + n->count : NULL;
+    for (size_t i = 0; i < n->count; i++) {
+        n->items[i] = r->stack[base + step * i + step - 1];
+        if (n->keys)
+            n->keys[i] = r->stack[base + step * i];
+    }
+    r->stack_count = base;
+    return n->keys ? check_unique_keys(r, n) : STATUS_OK;
+}
+
+/* Reads entries up to the end of the list or map. */
 static status read_entries(event_reader *r, yaml_event_type_t end, int depth, node *n)
 {
+    const size_t base = r->stack_count;
     for (;;) {
         yaml_event_t event;
         TRY(events_next(r, &event));
         status code = STATUS_OK;
         if (event.type == end) {
             yaml_event_delete(&event);
-            return n->kind == NODE_MAP ? check_unique_keys(r, n) : STATUS_OK;
+            return adopt(r, base, n);
         }
-        node *key = NULL, *value = NULL;
+        node *entry = NULL;
         if (n->kind == NODE_MAP) {
-            code = read_key(r, &event, &key);
+            code = read_key(r, &event, &entry);
             yaml_event_delete(&event);
-            THEN(code, events_next(r, &event));
+            THEN(code, push(r, entry));
+            TRY(code);
+            TRY(events_next(r, &event));
         }
-        if (code == STATUS_OK) {
-            code = read_node(r, &event, depth + 1, &value);
-            yaml_event_delete(&event);
-        }
-        THEN(code, node_append(r, n, key, value));
-        if (code != STATUS_OK) {
-            node_destroy(key);
-            node_destroy(value);
-            return code;
-        }
+        code = read_node(r, &event, depth + 1, &entry);
+        yaml_event_delete(&event);
+        THEN(code, push(r, entry));
+        TRY(code);
     }
 }
 
-/* Reads the node that starts with *event, which the caller deletes. *out is set only on success. */
+/* Reads the node that starts with *event, which the caller deletes. */
 static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out)
 {
     if (event->type == YAML_SCALAR_EVENT)
         return read_scalar(r, event, out);
     if (depth > DEPTH_LIMIT)
         return events_error(r, event->start_mark, "use at most 16 levels", "nested deeper than 16 levels");
-    bool map = event->type == YAML_MAPPING_START_EVENT;
-    node *n = NULL;
-    TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n));
-    status code = read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, n);
-    if (code != STATUS_OK) {
-        node_destroy(n);
-        return code;
-    }
-    *out = n;
-    return STATUS_OK;
+    const bool map = event->type == YAML_MAPPING_START_EVENT;
+    TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, 0, out));
+    return read_entries(r, map ? YAML_MAPPING_END_EVENT : YAML_SEQUENCE_END_EVENT, depth, *out);
 }
 
 /* Reads the only document, from stream start to stream end. */
@@ -285,22 +325,6 @@ static status read_stream(event_reader *r, node **root)
     }
 }
 
-static status wrap(const char *name, node *root, document **out, diagnostic *why)
-{
-    document *d = calloc(1, sizeof *d);
-    char *copy = strdup(name);
-    if (!d || !copy) {
-        free(d);
-        free(copy);
-        node_destroy(root);
-        return out_of_memory(why);
-    }
-    d->name = copy;
-    d->root = root;
-    *out = d;
-    return STATUS_OK;
-}
-
 static bool is_image(const char *text, size_t size)
 {
     return size >= 4 && (memcmp(text, "\x89PNG", 4) == 0 || memcmp(text, "\xff\xd8\xff", 3) == 0);
@@ -317,23 +341,25 @@ status document_parse(const char *name, const char *text, size_t size, document 
     event_reader r = {.name = name, .text = text, .size = size, .node_count = 0, .why = why};
     if (size > SIZE_LIMIT) {
         diagnostic_locate(why, name, 1, 1);
-        return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 64 MiB");
+        return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 256 MiB");
     }
     if (is_image(text, size))
         return events_error(&r, (yaml_mark_t){0}, "give the scene, study or script file instead",
                             "this is an image file, not YAML");
-    if (!yaml_parser_initialize(&r.parser))
-        return out_of_memory(r.why);
+    if (!(r.tree = calloc(1, sizeof *r.tree)) || !(r.tree->name = strdup(name)) || !yaml_parser_initialize(&r.parser)) {
+        document_destroy(r.tree);
+        return out_of_memory(why);
+    }
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&r.parser, (const unsigned char *)text, size);
-    node *root = NULL;
-    status code = read_stream(&r, &root);
+    const status code = read_stream(&r, &r.tree->root);
     yaml_parser_delete(&r.parser);
-    if (code != STATUS_OK) {
-        node_destroy(root);
-        return code;
-    }
-    return wrap(name, root, out, why);
+    free(r.stack);
+    if (code == STATUS_OK)
+        *out = r.tree;
+    else
+        document_destroy(r.tree);
+    return code;
 }
 
 status document_read_below(const char *path, const char *root, document **out, diagnostic *why)
@@ -349,11 +375,14 @@ status document_read_below(const char *path, const char *root, document **out, d
 
 void document_destroy(document *d)
 {
-    if (d) {
-        node_destroy(d->root);
-        free(d->name);
-        free(d);
+    if (!d)
+        return;
+    for (block *b = d->newest, *before; b; b = before) {
+        before = b->before;
+        free(b);
     }
+    free(d->name);
+    free(d);
 }
 
 const node *document_root(const document *d)

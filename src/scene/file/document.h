@@ -10,17 +10,18 @@ typedef enum node_kind { NODE_SCALAR, NODE_LIST, NODE_MAP } node_kind;
 
 typedef struct node {
     node_kind kind;
-    long line, column; /* from 1 */
-    char *text;        /* NODE_SCALAR */
     bool quoted;
-    struct node **items; /* NODE_LIST: items; NODE_MAP: values */
-    struct node **keys;  /* NODE_MAP: unique scalars */
+    unsigned line, column; /* from 1 */
+    char *text;            /* NODE_SCALAR */
+    struct node **items;   /* NODE_LIST: items; NODE_MAP: values */
+    struct node **keys;    /* NODE_MAP: unique scalars */
     size_t count;
 } node;
 
 typedef struct document document;
 
-/* Parses a text. Limits: 64 MiB, depth 16, 2^21 nodes. name is the file name in diagnostics. */
+/* Parses a text. Limits: 256 MiB, depth 16, 2^24 nodes, and the memory budget (base/budget.h): a node takes 48 bytes,
+ * its text and 8 to 16 bytes in its parent. name is the file name in diagnostics. */
 status document_parse(const char *name, const char *text, size_t size, document **out, diagnostic *why);
 /* Parses a file below root (base/file.h; NULL: no restriction). */
 status document_read_below(const char *path, const char *root, document **out, diagnostic *why);

@@ -68,43 +68,44 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
 {
     bool vector = row->type == PARAM_VECTOR || row->type == PARAM_COLOR || row->type == PARAM_LIST;
     bool number = row->type == PARAM_INT || row->type == PARAM_REAL;
-    char remedy[420];
-    param_remedy(row, false, remedy, sizeof remedy);
-    if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector))
-        return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
-                          value->kind == NODE_MAP ? "map" : "list");
+    if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector)) {
+        char remedy[420];
+        return node_error(r->file, value, r->why, param_remedy(row, false, remedy, sizeof remedy), "%.150s is a %s",
+                          path, value->kind == NODE_MAP ? "map" : "list");
+    }
     if (value->quoted && number)
         return node_error(r->file, value, r->why, "remove the quotes", "%.150s is text, but must be a number", path);
     return STATUS_OK;
 }
 
-static status read_value(const scene_reader *r, const char *path, const param *row, const node *value)
+static status read_value(const scene_reader *r, const char *path, const param_place *at, const node *value)
 {
-    TRY(check_value_kind(r, row, path, value));
+    TRY(check_value_kind(r, at->row, path, value));
     char *text = node_value_text(value);
     if (!text && node_is_value(value))
         return out_of_memory(r->why);
     if (!text)
-        return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
+        return node_error(r->file, value, r->why, at->row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s contains something other than plain numbers", path);
-    status code = read_located(r, value, scene_set(r->scene, path, text, r->why));
+    status code = read_located(r, value, param_place_set(r->scene, at, path, text, r->why));
     free(text);
     return code;
 }
 
-/* Sets the entries of a map that are rows of the group, and skips others; name is the path's first word. */
-static status read_entries(const scene_reader *r, const char *name, param_group group, const node *map)
+/* Sets the entries of an object's map that are rows of its group, and skips others; name is the path's first word. */
+static status read_entries(const scene_reader *r, const char *name, param_group group, size_t index, const node *map)
 {
+    param_place at = {.object_group = group, .index = index, .element = -1};
     for (size_t i = 0; i < map->count; i++) {
         const char *key = map->keys[i]->text;
-        const param *row = param_find(group, key);
-        if (!row)
+        at.row = param_find(group, key);
+        if (!at.row)
             continue;
         char path[2 * SCENE_NAME_MAX + 2];
         snprintf(path, sizeof path, "%s.%s", name, key);
-        param_place unused;
-        TRY(read_located(r, map->keys[i], param_place_find(r->scene, path, &unused, r->why)));
-        TRY(read_value(r, path, row, map->items[i]));
+        if (group == PARAM_SOLID && !solid_has(&r->scene->solids[index], at.row))
+            TRY(read_located(r, map->keys[i], param_place_find(r->scene, path, &at, r->why)));
+        TRY(read_value(r, path, &at, map->items[i]));
     }
     return STATUS_OK;
 }
@@ -119,9 +120,20 @@ static status read_one_medium(const scene_reader *r, const node *map)
     return STATUS_OK;
 }
 
+static bool is_key(param_group group, const char *key)
+{
+    return param_find(group, key) ||
+           (group == PARAM_SOLID && (strcmp(key, "shape") == 0 || strcmp(key, "material") == 0));
+}
+
 /* Refuses keys that are not rows of the group. */
 static status read_check_keys(const scene_reader *r, param_group group, const node *map)
 {
+    size_t known = 0;
+    while (known < map->count && is_key(group, map->keys[known]->text))
+        known++;
+    if (known == map->count)
+        return STATUS_OK;
     enum { ROOM = 128 };
     const char *words[ROOM];
     size_t count = 0;
@@ -214,7 +226,7 @@ static status read_object(const scene_reader *r, param_group group, const node *
 {
     size_t index = 0;
     TRY(begin_object(r, group, key, map, &index));
-    TRY(read_entries(r, key->text, group, map));
+    TRY(read_entries(r, key->text, group, index, map));
     store_locations(r, group, index, map);
     return read_located(r, key, check_object(r->scene, group, index, r->why));
 }
@@ -254,7 +266,7 @@ static status read_settings(const scene_reader *r, const char *name, param_group
 {
     TRY(read_expect_map(r, map, name));
     TRY(read_check_keys(r, group, map));
-    TRY(read_entries(r, name, group, map));
+    TRY(read_entries(r, name, group, 0, map));
     if (group == PARAM_BACKGROUND)
         TRY(check_sky(r, map));
     return read_located(r, map, check_object(r->scene, group, 0, r->why));

@@ -42,10 +42,12 @@ static status check_files(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
+#define SMALLER "make the scene smaller, or send the scene file instead"
+
 static status too_much(const char *what, double value, double limit, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "make the scene smaller, or send the scene file instead",
-                    "a shared scene can have at most %.4g %s, not %.4g", limit, what, value);
+    return diagnose(why, STATUS_BAD_INPUT, SMALLER, "a shared scene can have at most %.4g %s, not %.4g", limit, what,
+                    value);
 }
 
 static double motion_of(const scene *s)
@@ -77,28 +79,31 @@ status shared_scene_check(const scene *s, diagnostic *why)
 
 /* Resets the settings of the machine to their defaults. render.accel stays, because it decides the number of
  * intersection tests; beams are no setting of the machine. */
-static status forget_machine(void *bare, const char *path, const param *row, const char *value)
+static status forget_machine(void *bare, const param_place *at)
 {
-    (void)value;
-    const bool is_of_machine = row->performance_only && (row->group == PARAM_RENDER || row->group == PARAM_MESH) &&
-                               strcmp(row->name, "accel") != 0;
-    return is_of_machine ? scene_set(bare, path, row->fallback, NULL) : STATUS_OK;
+    const bool is_of_machine = at->row->performance_only && strcmp(at->row->name, "accel") != 0;
+    return is_of_machine ? param_place_set(bare, at, at->row->name, at->row->fallback, NULL) : STATUS_OK;
+}
+
+static status too_long(diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, SMALLER, "a shared scene can have at most %d bytes of text",
+                    SHARED_TEXT_MAX);
 }
 
 status shared_scene_text(const scene *s, char **text, diagnostic *why)
 {
+    enum { SOLID_LEAST = 20 }; /* bytes of the shortest solid */
     *text = NULL;
     TRY(shared_scene_check(s, why));
+    if (s->solid_count > SHARED_TEXT_MAX / SOLID_LEAST)
+        return too_long(why);
     scene *bare = scene_clone(s);
-    status code = bare && scene_each_param(s, forget_machine, bare) == STATUS_OK ? STATUS_OK : out_of_memory(why);
-    THEN(code, scene_write_text(bare, NULL, false, text, why));
+    const bool forgot = bare && param_place_each(s, PARAM_RENDER, forget_machine, bare) == STATUS_OK &&
+                        param_place_each(s, PARAM_MESH, forget_machine, bare) == STATUS_OK;
+    const status code = forgot ? scene_write_short(bare, SHARED_TEXT_MAX, text, why) : out_of_memory(why);
     scene_destroy(bare);
-    if (code == STATUS_OK && strlen(*text) > SHARED_TEXT_MAX) {
-        code = too_much("bytes of text", (double)strlen(*text), SHARED_TEXT_MAX, why);
-        free(*text);
-        *text = NULL;
-    }
-    return code;
+    return code == STATUS_OK && !*text ? too_long(why) : code;
 }
 
 status shared_scene_code(const char *text, char **code, diagnostic *why)

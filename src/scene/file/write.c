@@ -65,14 +65,26 @@ static bool is_needed(const param *row)
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
+/* Whether a solid has the value that a reader would assume. A fast test for scenes of many solids, which have most
+ * parameters from a material or the defaults; false if it is not known. */
+static bool solid_has_implied(const scene *s, const param_place *at)
+{
+    const solid *one = &s->solids[at->index], *new = s->new_solid;
+    if (at->row->group != PARAM_MATERIAL)
+        return new &&param_values_match(at->row, one, new);
+    if (one->material_index < 0)
+        return new &&param_values_match(at->row, &one->surface, &new->surface);
+    const material *m = &s->materials[one->material_index].value;
+    const bool is_other_index = is_material_row(at->row, offsetof(material, ior)) && m->medium != MEDIUM_IOR;
+    return !is_other_index && param_values_match(at->row, &one->surface, m);
+}
+
 /* Whether the line is written: a reader would infer another value. all: every line, unless it would replace a setting
  * in use. value: the row's value as text. */
 static status is_line_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
                              diagnostic *why)
 {
     *wanted = false;
-    if (is_without_effect(s, at))
-        return STATUS_OK;
     char *implied = implied_text(s, at);
     if (!implied)
         return out_of_memory(why);
@@ -90,6 +102,8 @@ typedef struct scene_writer {
     const char *path; /* path of the new file */
     bool all;
     FILE *out;
+    const size_t *size;              /* of the text, except for what the stream holds */
+    size_t most;                     /* bytes; SIZE_MAX: no limit */
     bool begun;                      /* the file is not empty */
     param_group group;               /* the current group */
     bool in_section;                 /* the heading of the group's section is written */
@@ -179,12 +193,8 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
     return code;
 }
 
-static status visit(void *context, const param_place *at, const char *value)
+static status put_row(scene_writer *w, const char *name, const param_place *at, const char *value)
 {
-    scene_writer *w = context;
-    const char *name = param_place_group_name(w->s, at->object_group, at->index);
-    if (is_section_of_objects(at->object_group) && strcmp(w->object, name) != 0)
-        begin_object(w, at);
     bool wanted = false;
     status code = is_line_wanted(w->s, at, value, w->all, &wanted, w->why);
     if (code != STATUS_OK || !wanted)
@@ -198,6 +208,22 @@ static status visit(void *context, const param_place *at, const char *value)
     char label[2 * SCENE_NAME_MAX];
     snprintf(label, sizeof label, "%s.%s", name, at->row->name);
     return put_path(w, label, at->row, value);
+}
+
+static status visit(void *context, const param_place *at)
+{
+    scene_writer *w = context;
+    const char *name = param_place_group_name(w->s, at->object_group, at->index);
+    if (is_section_of_objects(at->object_group) && strcmp(w->object, name) != 0)
+        begin_object(w, at);
+    if (*w->size > w->most)
+        return STATUS_INTERRUPTED;
+    if (is_without_effect(w->s, at) || (!w->all && at->object_group == PARAM_SOLID && solid_has_implied(w->s, at)))
+        return STATUS_OK;
+    char *value = param_place_text(w->s, at);
+    const status code = value ? put_row(w, name, at, value) : out_of_memory(w->why);
+    free(value);
+    return code;
 }
 
 /* Arrays given by a program cannot be written to a file. */
@@ -243,15 +269,37 @@ static status put_scene(scene_writer *w)
     return code;
 }
 
-status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why)
+/* *text is NULL, and the status STATUS_INTERRUPTED, for a text of more than `most` bytes. */
+static status write_text(const scene *s, const char *path, bool all, size_t most, char **text, diagnostic *why)
 {
     *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
-    const status code = text_writer_end(&writer, put_scene(&w), text, NULL, why);
-    /* A parameter whose text did not fit in memory has no diagnostic yet. */
-    return code == STATUS_FAILURE ? out_of_memory(why) : code;
+    scene_writer w = {.s = s,
+                      .path = path ? path : "",
+                      .all = all,
+                      .out = writer.stream,
+                      .size = &writer.size,
+                      .most = most,
+                      .why = why};
+    size_t size = 0;
+    const status code = text_writer_end(&writer, put_scene(&w), text, &size, why);
+    if (code != STATUS_OK || size <= most)
+        return code;
+    free(*text);
+    *text = NULL;
+    return STATUS_INTERRUPTED;
+}
+
+status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why)
+{
+    return write_text(s, path, all, SIZE_MAX, text, why);
+}
+
+status scene_write_short(const scene *s, size_t most, char **text, diagnostic *why)
+{
+    const status code = write_text(s, NULL, false, most, text, why);
+    return code == STATUS_INTERRUPTED ? STATUS_OK : code;
 }
 
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why)

@@ -13,6 +13,10 @@
  * parameter in use is written, also with its default. STATUS_BAD_INPUT if a title or path is not valid UTF-8. */
 status scene_write_text(const scene *s, const char *path, bool all, char **text, diagnostic *why);
 
+/* scene_write_text for a file in the working folder, without defaults; *text is NULL if it would have more than `most`
+ * bytes: a scene of many solids is then not written to its end. */
+status scene_write_short(const scene *s, size_t most, char **text, diagnostic *why);
+
 /* Writes the text to a file, atomically; "-" is standard output. */
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why);
 

@@ -323,14 +323,19 @@ static void store(scene *s, const param_place *at, param_value value)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
 }
 
+status param_place_set(scene *s, const param_place *at, const char *path, const char *value, diagnostic *why)
+{
+    param_value parsed;
+    TRY(param_value_parse(at->row, at->element, path, value, &parsed, why));
+    store(s, at, parsed);
+    return STATUS_OK;
+}
+
 status scene_set(scene *s, const char *path, const char *value, diagnostic *why)
 {
     param_place at;
     TRY(param_place_find(s, path, &at, why));
-    param_value parsed;
-    TRY(param_value_parse(at.row, at.element, path, value, &parsed, why));
-    store(s, &at, parsed);
-    return STATUS_OK;
+    return param_place_set(s, &at, path, value, why);
 }
 
 status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
@@ -347,8 +352,8 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
     return code;
 }
 
-/* The value of a place as text; the unused direction of the camera is derived. */
-static char *place_text(const scene *s, const param_place *at)
+/* The unused direction of the camera is derived. */
+char *param_place_text(const scene *s, const param_place *at)
 {
     if (at->object_group != PARAM_CAMERA)
         return param_value_text(at->row, at->element, (const char *)place_base(s, at) + at->row->offset);
@@ -361,16 +366,8 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
     *value = NULL;
     param_place at;
     TRY(param_place_find(s, path, &at, why));
-    *value = place_text(s, &at);
+    *value = param_place_text(s, &at);
     return *value ? STATUS_OK : out_of_memory(why);
-}
-
-static status visit_one(const scene *s, const param_place *at, param_place_visit *visit, void *context)
-{
-    char *value = place_text(s, at);
-    const status code = value ? visit(context, at, value) : STATUS_FAILURE;
-    free(value);
-    return code;
 }
 
 /* Whether scene_each_param visits the row. It skips rows that are not in use, and that a setting would put into use:
@@ -411,7 +408,7 @@ static status visit_rows(const place_tour *tour, param_place at, param_group row
         at.row = param_at(i);
         if (at.row->group == rows && is_in_use(s, &at) &&
             (at.object_group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)) && !is_skipped(tour, &at))
-            code = visit_one(s, &at, tour->visit, tour->context);
+            code = tour->visit(tour->context, &at);
     }
     return code;
 }
@@ -439,12 +436,14 @@ typedef struct path_visitor {
     void *context;
 } path_visitor;
 
-static status visit_path(void *context, const param_place *at, const char *value)
+static status visit_path(void *context, const param_place *at)
 {
     const path_visitor *v = context;
     char *path = text_format("%s.%s", param_place_group_name(v->s, at->object_group, at->index), at->row->name);
-    const status code = path ? v->visit(v->context, path, at->row, value) : STATUS_FAILURE;
+    char *value = param_place_text(v->s, at);
+    const status code = path && value ? v->visit(v->context, path, at->row, value) : STATUS_FAILURE;
     free(path);
+    free(value);
     return code;
 }
 

@@ -132,11 +132,20 @@ typedef struct param_place {
 } param_place;
 
 /* Visits the parameters of the objects of one group as scene_each_param does, by place. */
-typedef status param_place_visit(void *context, const param_place *at, const char *value);
+typedef status param_place_visit(void *context, const param_place *at);
 status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context);
+
+/* The value of a place as text, in the form of scene_get. Newly allocated; NULL if memory runs out. */
+char *param_place_text(const scene *s, const param_place *at);
+/* Whether two objects have bit-identical values of a row, in their structs `one` and `other`; false also if that is not
+ * known. Equal values have equal texts. */
+bool param_values_match(const param *row, const void *one, const void *other);
 
 /* Finds the target of a path. STATUS_BAD_INPUT for an invalid path, with the nearest valid path as remedy. */
 status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why);
+
+/* scene_set for a place that is known; path is its path, for messages. */
+status param_place_set(scene *s, const param_place *at, const char *path, const char *value, diagnostic *why);
 
 /* Finds an object by name, or camera, background or render; out->row is NULL, out->element is -1. */
 status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);

@@ -618,7 +618,7 @@ const char *param_group_name(param_group group)
 static const param *find_row(param_group group, const char *name)
 {
     for (size_t i = 0; i < TABLE_COUNT; i++)
-        if (table[i].group == group && strcmp(table[i].name, name) == 0)
+        if (table[i].group == group && table[i].name[0] == name[0] && strcmp(table[i].name, name) == 0)
             return &table[i];
     return NULL;
 }

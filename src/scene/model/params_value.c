@@ -117,6 +117,22 @@ char *param_value_text(const param *row, int element, const void *field)
     return NULL;
 }
 
+bool param_values_match(const param *row, const void *one, const void *other)
+{
+    const char *a = (const char *)one + row->offset, *b = (const char *)other + row->offset;
+    switch (row->type) {
+    case PARAM_INT:
+    case PARAM_CHOICE: return memcmp(a, b, sizeof(int64_t)) == 0;
+    case PARAM_REAL: return memcmp(a, b, sizeof(double)) == 0;
+    case PARAM_VECTOR:
+    case PARAM_COLOR: return memcmp(a, b, sizeof(vec3)) == 0;
+    case PARAM_LIST: return memcmp(a, b, sizeof(number_list)) == 0;
+    case PARAM_WORD: return strcmp(a, b) == 0;
+    case PARAM_PATH: break;
+    }
+    return false;
+}
+
 /* --- from text --- */
 
 /* How much of an invalid value a message repeats. */
@@ -279,6 +295,8 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
         return wrong(row, false, why, "%s: %zu value%s instead of 3", label, count, count == 1 ? "" : "s");
     for (int i = 0; i < 3; i++) {
         char element[160];
+        if (number_parse_real(parts[i], &values[i]) && in_range(row, values[i]))
+            continue;
         snprintf(element, sizeof element, "%s.%c", label, (row->type == PARAM_COLOR ? "rgb" : "xyz")[i]);
         TRY(parse_real(row, element, parts[i], &values[i], why));
     }

@@ -33,6 +33,7 @@ void scene_destroy(scene *s)
     if (!s)
         return;
     objects_release(s);
+    free(s->new_solid);
     free(s->background.image_path);
     image_destroy(s->background.img);
     free(s->path);

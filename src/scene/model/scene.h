@@ -29,6 +29,7 @@ struct scene {
     size_t beam_count;
     solid *solids;
     size_t solid_count;
+    solid *new_solid;   /* with all defaults and without a name; NULL until the first solid is added */
     name_tally names;   /* of meshes, textures, materials, lights, beams and solids */
     load_limits limits; /* none by default; set by scene_limit */
 };

@@ -25,6 +25,22 @@ status scene_set_title(scene *s, const char *title, diagnostic *why)
 
 /* --- adding --- */
 
+/* Sets a new solid to the defaults. Scenes can have many solids: the texts of the table are read for the first. */
+static status set_solid_defaults(scene *s, solid *new, diagnostic *why)
+{
+    if (!s->new_solid) {
+        if (!(s->new_solid = calloc(1, sizeof *s->new_solid)))
+            return out_of_memory(why);
+        TRY(param_set_defaults(PARAM_SOLID, s->new_solid, why));
+        TRY(param_set_defaults(PARAM_MATERIAL, &s->new_solid->surface, why));
+        s->new_solid->material_index = -1;
+    }
+    char *name = new->name;
+    *new = *s->new_solid;
+    new->name = name;
+    return STATUS_OK;
+}
+
 /* shape: only for solids. */
 static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
 {
@@ -33,13 +49,10 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
     TRY(check_name_is_free(s, name, why));
     if (!object_append(s, group, name))
         return out_of_memory(why);
-    status code = param_set_defaults(group, object_values(s, group, at), why);
-    if (group == PARAM_SOLID && code == STATUS_OK) {
-        solid *new = &s->solids[at];
-        new->shape.kind = shape;
-        new->material_index = -1;
-        code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
-    }
+    status code = group == PARAM_SOLID ? set_solid_defaults(s, &s->solids[at], why)
+                                       : param_set_defaults(group, object_values(s, group, at), why);
+    if (group == PARAM_SOLID)
+        s->solids[at].shape.kind = shape;
     /* Counting all solids for each new one is slow: few bounded solids cannot exceed the limits. */
     const shape_rule *rule = shape_of_kind(shape);
     if (group != PARAM_SOLID || rule->unbounded || rule->triangles || s->solid_count > SCENE_PRIMITIVES_MAX / 3)
