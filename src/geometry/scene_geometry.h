@@ -76,6 +76,11 @@ typedef struct region {
     int solid;       /* index of the solid it came from */
 } region;
 
+/* Where a region comes from: the source, and which of the solids that its shape stands for (solid_shape_copy). */
+typedef struct region_origin {
+    uint32_t source, copy;
+} region_origin;
+
 typedef struct scene_geometry {
     int primitive_count;
     primitive *primitives;          /* the direct ones first */
@@ -87,7 +92,8 @@ typedef struct scene_geometry {
     int region_count;               /* priority indices 1 .. region_count */
     int highest_transparent;        /* the highest priority index of a region that is not opaque; 0 for none */
     region *regions;                /* [0] is the surrounding medium */
-    solid_shape *shapes;            /* by priority index, the shapes of the regions; [0] is unused */
+    solid_shape *shapes;            /* by source; their points are borrowed */
+    region_origin *origins;         /* by priority index; [0] is unused */
     double extent;                  /* the largest extent of a primitive */
     uint64_t further;               /* bits of rows for further intervals of the primitive before them */
     uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; 0 with a tree */
@@ -106,12 +112,16 @@ static inline bool region_casts_shadow(const region *b, bool solid_shadows)
     return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->attenuates || b->reflects;
 }
 
-/* Description of a solid for scene_geometry_build. */
+/* The shape of a region, without points. */
+solid_shape scene_geometry_shape(const scene_geometry *g, int priority_index);
+
+/* Description of a solid for scene_geometry_build, which has a region for each of its points. */
 typedef struct region_source {
     const solid_shape *shape;
     const struct hierarchy *tree; /* over the triangles of a mesh; borrowed, like the mesh */
     int64_t priority;             /* the higher priority wins; of equal ones the earlier in the list */
     int64_t medium;
+    int64_t further_media; /* copy i > 0 of the shape's solids has the medium further_media + i; 0: all have `medium` */
     bool opaque;
     double shadow_transmittance;
     const double *face_shadow_transmittance; /* by material slot; borrowed, or NULL */

@@ -42,10 +42,11 @@ typedef struct solid_shape {
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
     double even_1[3], even_2[3]; /* of its sides' sag: coefficients of the 4th, 6th and 8th power of the radius */
     vec3 size;
-    const struct mesh *mesh; /* NULL until loaded */
-    vec3 scale;              /* above 0 */
-    vec3 copies;             /* integers from 1, along the axes of the local frame */
-    vec3 spacing;            /* between copies, in the local frame */
+    const struct mesh *mesh;   /* NULL until loaded */
+    const struct mesh *points; /* a copy of the solid is at each vertex; NULL: one solid, or not loaded */
+    vec3 scale;                /* above 0; of the mesh, or of the points */
+    vec3 copies;               /* integers from 1, along the axes of the local frame */
+    vec3 spacing;              /* between copies, in the local frame */
 } solid_shape;
 
 /* The most copies of one mesh, and of all meshes together: a face number has 22 bits for the copy
@@ -56,10 +57,15 @@ enum { COPIES_MAX = 1 << 22 };
 struct shape_rule;
 const struct shape_rule *shape_of(const solid_shape *shape);
 
+/* The number of solids that the shape stands for, 1 without points, and solid i: the shape at that point, without
+ * points. Points are along the axes of the local frame, multiplied by scale; each copy has the shape's rotation. */
+size_t solid_shape_count(const solid_shape *shape);
+solid_shape solid_shape_copy(const solid_shape *shape, size_t i);
+
 /* Checks the parameters, and constraints between them such as inner_radius < radius. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh. */
+/* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh and for points. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation matrix of rotation_deg: local to world. A positive angle takes y to z about x, z to x about y, x to y

@@ -19,7 +19,7 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *other = &s->solids[i];
-        if (other != bubble && other->visible && other->surface.transparency > 0.0 &&
+        if (other != bubble && other->visible && !other->points[0] && other->surface.transparency > 0.0 &&
             !material_matches_surroundings(s, &other->surface) &&
             solid_shape_contains(&other->shape, bubble->shape.position))
             return true;

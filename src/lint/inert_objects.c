@@ -268,6 +268,21 @@ bool one_mesh(const inert_case *c)
     return c->s->mesh_count == 1 && inert_say(c, "one-mesh", "add another under meshes:", "the scene has one mesh");
 }
 
+bool no_point_files(const inert_case *c)
+{
+    for (size_t i = 0; i < c->s->mesh_count; i++)
+        if (!c->s->meshes[i].data || c->s->meshes[i].data->triangle_count == 0)
+            return false;
+    return inert_say(c, "no-point-files", "add one under meshes:", "the scene has no file of points");
+}
+
+bool no_points(const inert_case *c)
+{
+    return !shape_of(&c->owner->shape)->triangles && !c->owner->points[0] &&
+           inert_say(c, "no-points", "add a file of points under meshes:, and set points to its name",
+                     "only a mesh and points have a scale");
+}
+
 /* --- meshes and textures --- */
 
 /* No visible solid uses the mesh. The remedy names a hidden solid that uses it, or a visible solid that could. */

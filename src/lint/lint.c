@@ -102,12 +102,12 @@ static void shrink(render_settings *r, double most)
 
 static bool is_loaded(const scene *s)
 {
-    for (size_t i = 0; i < s->solid_count; i++)
-        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->triangles) {
-            const mesh_entry *m = scene_find_mesh(s, s->solids[i].mesh);
-            if (!m || !m->data)
-                return false;
-        }
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        const mesh_entry *m = scene_mesh_of(s, one), *points = scene_points_of(s, one);
+        if (one->visible && ((shape_of(&one->shape)->triangles && (!m || !m->data)) || (points && !points->data)))
+            return false;
+    }
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 

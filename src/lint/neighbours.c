@@ -436,8 +436,8 @@ status lint_neighbours(const lint_input *input, diagnostic *why)
         const region *b = &a->regions[priority_index];
         const solid *owner = lint_solid(input, priority_index);
         const solid_shape shape = scene_loaded_shape(input->original, owner);
-        if (shape.mesh && !shape.mesh->closed)
-            continue; /* an open mesh contains nothing */
+        if ((shape.mesh && !shape.mesh->closed) || shape.points)
+            continue; /* an open mesh contains nothing; copies of one solid are not compared */
         all[count++] =
             (neighbour){b, owner, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
     }

@@ -28,7 +28,7 @@ void diagram_include_solid(diagram_box *box, const section_plane *plane, const s
 {
     const solid_shape *shape = &one->shape;
     const shape_rule *rule = shape_of(shape);
-    if (rule->unbounded || rule->triangles)
+    if (rule->unbounded || rule->triangles || one->points[0])
         return;
     const bounds3 b = rule->extent(shape).box;
     const mat3 rotation = rotation_from_deg(shape->rotation_deg);

@@ -428,5 +428,21 @@ for verb in run status summary verify; do
         study "$verb" unknown.study --results unknown-results
 done
 
+# --- files of points
+printf 'meshes:\n  p: {file: p.xyz}\nsolids:\n  a: {shape: sphere, points: p}\n' >points.yaml
+points() { # WHAT PATTERN TEXT
+    printf '%b' "$3" >p.xyz
+    refused "points: $1" "$2" render points.yaml --json
+    refused "points, checked: $1" "$2" scene points.yaml --check
+}
+points "a missing number" '[^;]*p\.xyz:2:4: p: .*missing; give three numbers' '1 2 3\n1 2\n'
+points "a word" '[^;]*p\.xyz:1:3: p: this is not a finite number; give' '1 two 3\n'
+points "a fourth number" '[^;]*p\.xyz:1:7: .*follows' '1 2 3 -4\n'
+points "a coordinate that is too large" '[^;]*p\.xyz:1:5: .*too large' '1 2 1e7\n'
+points "binary" '[^;]*p\.xyz:1:1: .*' '\0\1\2\3'
+points "empty" '[^;]*p\.xyz:1:1: .*no points' ''
+rm p.xyz
+refused "points: no file" 'points\.yaml:2:13: p: p\.xyz: cannot open' render points.yaml --json
+
 echo "$passed passed, $failed failed"
 ((failed == 0))

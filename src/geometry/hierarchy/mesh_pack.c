@@ -317,7 +317,7 @@ static status check_head(const mesh_head *h, const pack_reader *from, diagnostic
         return pack_damaged(why, "the head of a mesh");
     if (!pack_holds(from, h->vertices, sizeof(vec3)) || !pack_holds(from, h->triangles, sizeof(mesh_triangle)))
         return pack_damaged(why, "a mesh is larger than the package");
-    if (h->triangles && !within(&h->bounds.low.x, 6))
+    if ((h->triangles || h->vertices) && !within(&h->bounds.low.x, 6))
         return pack_damaged(why, "the bounds of a mesh");
     const bool hole = h->hole_from || h->hole_to || h->hole_triangle;
     if (hole && (h->hole_from >= h->vertices || h->hole_to >= h->vertices || h->hole_triangle >= h->triangles))

@@ -215,6 +215,11 @@ void mesh_find_bounds(mesh *m)
             single &= single_round(p.x) == p.x && single_round(p.y) == p.y && single_round(p.z) == p.z;
         }
     }
+    for (size_t v = 0; m->triangle_count == 0 && v < m->vertex_count && !cancel_asked_at(v); v++) {
+        const vec3 p = m->vertices[v];
+        b.low = vec3_make(fmin(b.low.x, p.x), fmin(b.low.y, p.y), fmin(b.low.z, p.z));
+        b.high = vec3_make(fmax(b.high.x, p.x), fmax(b.high.y, p.y), fmax(b.high.z, p.z));
+    }
     m->bounds = b;
     m->single = single;
 }

@@ -1,4 +1,4 @@
-/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face.
+/* A triangle mesh, or a cloud of points without triangles: indexed vertices with optional normals and texture coordinates, and one material slot per face.
  * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
  * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
  * once in each direction, is closed: it bounds a volume, which is behind the fronts.
@@ -58,7 +58,7 @@ typedef struct mesh {
      * such vertices. mesh_finish resets it. */
     bool distinct;
     /* set by mesh_finish: */
-    bounds3 bounds;             /* of the vertices that triangles use; low > high without triangles */
+    bounds3 bounds;             /* of the vertices that triangles use, or of all without triangles; low > high: none */
     bool closed;                /* closed, with every front facing outwards */
     bool single;                /* every coordinate is exactly a float */
     mesh_hole hole;             /* for a mesh that is not closed */

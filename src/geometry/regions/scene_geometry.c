@@ -24,12 +24,22 @@ static int compare_priorities(const void *one, const void *other)
     return first->index > second->index ? -1 : 1;
 }
 
-/* The sources in the order of priority indices: ascending priority, and of equal priorities the later source first. */
-static void order_by_priority(const region_source *sources, int count, ordered_source *order)
+/* Sets the origins in the order of priority indices: ascending priority, and of equal priorities the later source, or
+ * copy, first. order: room for one per source. */
+static void order_by_priority(const region_source *sources, int count, ordered_source *order, region_origin *origins)
 {
     for (int i = 0; i < count; i++)
         order[i] = (ordered_source){sources[i].priority, i};
     qsort(order, (size_t)count, sizeof *order, compare_priorities);
+    for (int i = 0, r = 1; i < count; i++)
+        for (size_t copy = solid_shape_count(sources[order[i].index].shape); copy-- > 0;)
+            origins[r++] = (region_origin){(uint32_t)order[i].index, (uint32_t)copy};
+}
+
+solid_shape scene_geometry_shape(const scene_geometry *g, int priority_index)
+{
+    const region_origin from = g->origins[priority_index];
+    return solid_shape_copy(&g->shapes[from.source], from.copy);
 }
 
 /* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
@@ -65,7 +75,9 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
     primitive parts[SHAPE_PRIMITIVES];
     const shape_rule *shape = shape_of(source->shape);
     const int n = shape->primitive_count;
-    shape->primitives(source->shape, parts);
+    const solid_shape placed = scene_geometry_shape(g, priority_index);
+    const uint32_t copy = g->origins[priority_index].copy;
+    shape->primitives(&placed, parts);
     if (has_meniscus(source->shape)) {
         capillary_profile *surface = &g->surfaces[g->surface_count++];
         *surface = *meniscus_of(source->shape);
@@ -74,10 +86,9 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
     if (!source->opaque && priority_index > g->highest_transparent)
         g->highest_transparent = priority_index;
     region *b = &g->regions[priority_index];
-    g->shapes[priority_index] = *source->shape;
     *b = (region){.outside = g->primitive_count,
                   .hollow = n == 2 ? g->primitive_count + 1 : -1,
-                  .medium = source->medium,
+                  .medium = copy > 0 && source->further_media ? source->further_media + copy : source->medium,
                   .opaque = source->opaque,
                   .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
                   .face_shadow_transmittance = source->opaque ? NULL : source->face_shadow_transmittance,
@@ -99,15 +110,13 @@ static bool media_are_distinct(const scene_geometry *g)
     return true;
 }
 
-/* Builds the instance set. order: the sources by priority index. */
-static status build_instance_set(scene_geometry *g, const region_source *sources, const ordered_source *order,
-                                 diagnostic *why)
+static status build_instance_set(scene_geometry *g, const region_source *sources, diagnostic *why)
 {
     instance_source mesh_sources[PRIMITIVES_MAX];
     int count = 0;
     for (int k = 0; k < g->direct_region_count; k++) {
         const int r = g->direct_regions[k];
-        const region_source *source = &sources[order[r - 1].index];
+        const region_source *source = &sources[g->origins[r].source];
         if (shape_of(source->shape)->triangles)
             mesh_sources[count++] = (instance_source){source->shape, source->tree, g->regions[r].outside, r};
     }
@@ -126,20 +135,23 @@ enum { MANY = 24 };
 
 /* The primitives of a scene, counted by how rays find them. */
 typedef struct primitive_counts {
-    int all, findable; /* findable: those that a tree can find */
-    int normals;       /* of all their sides */
-    int surfaces;      /* of liquids with a meniscus */
+    size_t regions;
+    size_t all, findable; /* findable: those that a tree can find */
+    size_t normals;       /* of all their sides */
+    size_t surfaces;      /* of liquids with a meniscus */
 } primitive_counts;
 
 static primitive_counts count_primitives(const region_source *sources, int count)
 {
-    primitive_counts n = {0, 0, 0, 0};
+    primitive_counts n = {.all = 0};
     for (int i = 0; i < count; i++) {
-        const int places = shape_primitive_slots(sources[i].shape);
+        const size_t copies = solid_shape_count(sources[i].shape),
+                     places = copies * (size_t)shape_primitive_slots(sources[i].shape);
+        n.regions += copies;
         n.all += places;
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
-        n.normals += (int)sources[i].shape->sides;
-        n.surfaces += has_meniscus(sources[i].shape);
+        n.normals += copies * (size_t)sources[i].shape->sides;
+        n.surfaces += has_meniscus(sources[i].shape) ? copies : 0;
     }
     return n;
 }
@@ -151,10 +163,10 @@ static bool uses_tree(tree_use use, const primitive_counts *n)
 }
 
 /* Adds the regions: first the direct ones, then those for the tree. */
-static void add_regions(scene_geometry *g, const region_source *sources, const ordered_source *order, bool with_tree)
+static void add_regions(scene_geometry *g, const region_source *sources, bool with_tree)
 {
     for (int r = 1; r <= g->region_count; r++) {
-        const region_source *source = &sources[order[r - 1].index];
+        const region_source *source = &sources[g->origins[r].source];
         if (with_tree && can_be_in_tree(source))
             continue;
         add_region(g, r, source);
@@ -166,19 +178,19 @@ static void add_regions(scene_geometry *g, const region_source *sources, const o
         for (int row = 1; row < g->primitives[p].rows; row++)
             g->further |= (uint64_t)1 << (p + row);
     for (int r = 1; with_tree && r <= g->region_count; r++)
-        if (can_be_in_tree(&sources[order[r - 1].index]))
-            add_region(g, r, &sources[order[r - 1].index]);
+        if (can_be_in_tree(&sources[g->origins[r].source]))
+            add_region(g, r, &sources[g->origins[r].source]);
 }
 
 static status check_counts(const primitive_counts *n, bool with_tree, diagnostic *why)
 {
-    const int direct = with_tree ? n->all - n->findable : n->all;
+    const size_t direct = with_tree ? n->all - n->findable : n->all;
     if (direct > PRIMITIVES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 64 planes and meshes",
-                        "the visible solids are %d planes and meshes", direct);
+                        "the visible solids are %zu planes and meshes", direct);
     if (n->all > SET_PRIMITIVES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151 primitives",
-                        "the visible solids have %d primitives", n->all);
+                        "the visible solids have %zu primitives", n->all);
     return STATUS_OK;
 }
 
@@ -193,14 +205,15 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     scene_geometry *g = calloc(1, sizeof *g);
     ordered_source *order = calloc((size_t)count + 1, sizeof *order);
     if (g) {
-        g->primitives = large_calloc((size_t)n.all + 1, sizeof *g->primitives);
-        g->regions = large_calloc((size_t)count + 1, sizeof *g->regions);
+        g->primitives = large_calloc(n.all + 1, sizeof *g->primitives);
+        g->regions = large_calloc(n.regions + 1, sizeof *g->regions);
+        g->origins = large_calloc(n.regions + 1, sizeof *g->origins);
         g->shapes = calloc((size_t)count + 1, sizeof *g->shapes);
-        g->normals = large_calloc((size_t)n.normals + 1, sizeof *g->normals);
-        g->surfaces = calloc((size_t)n.surfaces + !n.surfaces, sizeof *g->surfaces);
-        g->direct_regions = calloc((size_t)count + 1, sizeof *g->direct_regions);
+        g->normals = large_calloc(n.normals + 1, sizeof *g->normals);
+        g->surfaces = calloc(n.surfaces + !n.surfaces, sizeof *g->surfaces);
+        g->direct_regions = calloc(n.regions + 1, sizeof *g->direct_regions);
     }
-    if (!g || !order || !g->primitives || !g->regions || !g->shapes || !g->normals || !g->surfaces ||
+    if (!g || !order || !g->primitives || !g->regions || !g->origins || !g->shapes || !g->normals || !g->surfaces ||
         !g->direct_regions) {
         free(order);
         scene_geometry_destroy(g);
@@ -208,10 +221,12 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     }
     g->regions[0] =
         (region){.outside = -1, .hollow = -1, .medium = outside_medium, .shadow_transmittance = 1.0, .solid = -1};
-    g->region_count = count;
-    order_by_priority(sources, count, order);
-    add_regions(g, sources, order, with_tree);
-    code = build_instance_set(g, sources, order, why);
+    g->region_count = (int)n.regions;
+    for (int i = 0; i < count; i++)
+        g->shapes[i] = *sources[i].shape;
+    order_by_priority(sources, count, order, g->origins);
+    add_regions(g, sources, with_tree);
+    code = build_instance_set(g, sources, why);
     if (code == STATUS_OK && with_tree)
         code = solid_tree_build(g, &g->tree, why);
     free(order);
@@ -236,6 +251,7 @@ void scene_geometry_destroy(scene_geometry *g)
     free(g->normals);
     free(g->surfaces);
     free(g->shapes);
+    free(g->origins);
     free(g);
 }
 

@@ -180,7 +180,8 @@ void solid_boxes_destroy(solid_boxes *b)
 static bounds3 bounds_of(const solid_tree *t, int i)
 {
     const scene_geometry *g = t->geometry;
-    const bounds3 box = shape_world_box(&g->shapes[t->solids[i].region]);
+    const solid_shape shape = scene_geometry_shape(g, t->solids[i].region);
+    const bounds3 box = shape_world_box(&shape);
     const double slack = 0x1p-40 * g->primitives[t->solids[i].outside].extent;
     const vec3 wider = vec3_make(slack, slack, slack);
     return (bounds3){vec3_sub(box.low, wider), vec3_add(box.high, wider)};

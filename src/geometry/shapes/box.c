@@ -81,7 +81,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 const shape_rule shape_box = {
     .word = "box",
     .meaning = "|x|, |y| and |z| at most half of its size; its position is its centre",
-    .parameters = WORDS("size"),
+    .parameters = WORDS("size", "points", "scale"),
     .check = check,
     .contains = contains,
     .primitive_count = 1,

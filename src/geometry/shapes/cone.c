@@ -82,7 +82,7 @@ const shape_rule shape_cone = {
     .word = "cone",
     .meaning = "x^2 + z^2 <= w^2, 0 <= y <= height, where w changes linearly from radius at the base to top_radius, 0 "
                "for a point; its position is the centre of its base",
-    .parameters = WORDS("radius", "top_radius", "height"),
+    .parameters = WORDS("radius", "top_radius", "height", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

@@ -150,7 +150,8 @@ const shape_rule shape_cylinder = {
     .word = "cylinder",
     .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base; with a "
                "capillary_length, a liquid whose top is a meniscus and whose volume is the same",
-    .parameters = WORDS("radius", "height", "m", "capillary_length", "contact_angle_deg", "contact_radius"),
+    .parameters =
+        WORDS("radius", "height", "m", "capillary_length", "contact_angle_deg", "contact_radius", "points", "scale"),
     .curved = true,
     .check = cylinder_check,
     .contains = cylinder_contains,
@@ -268,7 +269,7 @@ const shape_rule shape_cup = {
     .meaning =
         "a cylinder minus a cylinder of inner_radius that starts at the height of its floor and is open at the top; "
         "its position is the centre of its base",
-    .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
+    .parameters = WORDS("radius", "height", "m", "inner_radius", "floor", "points", "scale"),
     .hollow = true,
     .curved = true,
     .check = cup_check,

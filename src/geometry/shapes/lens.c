@@ -226,7 +226,7 @@ const shape_rule shape_lens = {
         "the centre lies above the side, 0 for a flat one; with a4_1 to a8_2 even aspheres; the sides do not cross "
         "within the rim",
     .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "conic_1", "conic_2", "a4_1", "a6_1", "a8_1",
-                        "a4_2", "a6_2", "a8_2"),
+                        "a4_2", "a6_2", "a8_2", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

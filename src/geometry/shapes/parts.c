@@ -62,8 +62,8 @@ vec3 placed_axis(const mat3 *turn, int k)
 double placed_limit(const placed_shape *placed, vec3 direction)
 {
     const solid_shape *shape = &placed->shape;
-    return vec3_dot(direction, shape->position) +
-           placed->rule->farthest(shape, mat3_apply_transposed(placed->turn, direction));
+    const vec3 local = mat3_apply_transposed(placed->turn, direction);
+    return vec3_dot(direction, shape->position) + (placed->rule->farthest(shape, local) + points_reach(shape, local));
 }
 
 double placed_farthest(const placed_shape *placed, vec3 direction)
@@ -86,7 +86,7 @@ double placed_farthest_from(const placed_shape *placed, const round_frame *frame
 {
     const solid_shape *shape = &placed->shape;
     const shape_rule *rule = placed->rule;
-    if (rule->unbounded)
+    if (rule->unbounded || shape->points) /* points: not needed */
         return INFINITY;
     if (rule->farthest_from)
         return rule->farthest_from(placed, frame);

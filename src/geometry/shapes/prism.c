@@ -132,7 +132,7 @@ const shape_rule shape_prism = {
     .meaning =
         "0 <= y <= height over a regular polygon with its corners on a circle of the given radius about the axis, "
         "one of them on the -z side; its position is the centre of its base",
-    .parameters = WORDS("radius", "sides", "height"),
+    .parameters = WORDS("radius", "sides", "height", "points", "scale"),
     .check = check,
     .contains = contains,
     .primitive_count = 1,

@@ -54,11 +54,29 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 
+size_t solid_shape_count(const solid_shape *shape)
+{
+    return shape->points ? shape->points->vertex_count : 1;
+}
+
+solid_shape solid_shape_copy(const solid_shape *shape, size_t i)
+{
+    solid_shape copy = *shape;
+    copy.points = NULL;
+    if (!shape->points)
+        return copy;
+    const vec3 p = shape->points->vertices[i], turned = shape->rotation_deg,
+               scaled = vec3_make(shape->scale.x * p.x, shape->scale.y * p.y, shape->scale.z * p.z);
+    const bool upright = turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0;
+    copy.position = vec3_add(shape->position, upright ? scaled : mat3_apply(rotation_from_deg(turned), scaled));
+    return copy;
+}
+
 bool solid_shape_contains(const solid_shape *shape, vec3 point)
 {
     const shape_rule *rule = shape_of(shape);
     const vec3 from_center = vec3_sub(point, shape->position), turned = shape->rotation_deg;
-    if (!rule->contains)
+    if (!rule->contains || shape->points)
         return false;
     if (turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0) /* the common case; drawings call this often */
         return rule->contains(shape, from_center);
@@ -70,14 +88,24 @@ placed_shape shape_placed(const solid_shape *shape)
     return (placed_shape){*shape, rotation_from_deg(shape->rotation_deg), shape_of(shape)};
 }
 
+/* The maximum of d . p over a box. */
+static double box_reach(bounds3 b, vec3 d)
+{
+    return (d.x > 0.0 ? b.high.x : b.low.x) * d.x + (d.y > 0.0 ? b.high.y : b.low.y) * d.y +
+           (d.z > 0.0 ? b.high.z : b.low.z) * d.z;
+}
+
+double points_reach(const solid_shape *shape, vec3 d)
+{
+    const vec3 s = shape->scale;
+    return shape->points ? box_reach(shape->points->bounds, vec3_make(s.x * d.x, s.y * d.y, s.z * d.z)) : 0.0;
+}
+
 double shape_reach(const solid_shape *shape, vec3 d)
 {
     const shape_rule *rule = shape_of(shape);
-    if (!rule->triangles)
-        return rule->farthest(shape, d);
-    const bounds3 b = rule->extent(shape).box;
-    return (d.x > 0.0 ? b.high.x : b.low.x) * d.x + (d.y > 0.0 ? b.high.y : b.low.y) * d.y +
-           (d.z > 0.0 ? b.high.z : b.low.z) * d.z;
+    return points_reach(shape, d) +
+           (rule->triangles ? box_reach(rule->extent(shape).box, d) : rule->farthest(shape, d));
 }
 
 bounds3 shape_world_box(const solid_shape *shape)
@@ -133,10 +161,11 @@ static bool is_same_plane(flat a, flat b)
     return !(fabs(same) < 1.0 - 1e-12) && !(fabs(a.at - (same < 0.0 ? -b.at : b.at)) > slack);
 }
 
-/* A mesh with several copies, or one that is not loaded. */
+/* A solid at several points, a mesh with several copies, or one that is not loaded. */
 static bool is_unknown(const solid_shape *s)
 {
-    return shape_of(s)->triangles && (!s->mesh || s->copies.x > 1.0 || s->copies.y > 1.0 || s->copies.z > 1.0);
+    return s->points ||
+           (shape_of(s)->triangles && (!s->mesh || s->copies.x > 1.0 || s->copies.y > 1.0 || s->copies.z > 1.0));
 }
 
 bool solid_shapes_may_coincide(const solid_shape *a, const solid_shape *b)

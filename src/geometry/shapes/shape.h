@@ -120,7 +120,9 @@ double round_distance(const round_frame *frame, vec3 point);
 /* An upper bound of round_distance over all points of the shape. */
 double placed_farthest_from(const placed_shape *placed, const round_frame *frame);
 
-/* The maximum along a local direction: `farthest`, but for a mesh the maximum over its bounding box. */
+/* What the points of a shape add to its reach along a local direction: the maximum over their bounding box, or 0. */
+double points_reach(const solid_shape *shape, vec3 direction);
+/* The maximum along a local direction: `farthest`, but for a mesh, and for points, over the bounding box. */
 double shape_reach(const solid_shape *shape, vec3 direction);
 /* The bounding box of a shape in the world (for a mesh, of its local box); infinite for an unbounded shape. */
 bounds3 shape_world_box(const solid_shape *shape);

@@ -86,7 +86,7 @@ solid_shape shape_point(vec3 at)
 const shape_rule shape_sphere = {
     .word = "sphere",
     .meaning = "x^2 + y^2 + z^2 <= radius^2; its position is its centre",
-    .parameters = WORDS("radius"),
+    .parameters = WORDS("radius", "points", "scale"),
     .isotropic = true,
     .curved = true,
     .check = check,

@@ -82,7 +82,7 @@ const shape_rule shape_torus = {
     .meaning =
         "(sqrt(x^2 + z^2) - radius)^2 + y^2 <= tube_radius^2, with tube_radius less than radius; its position is "
         "its centre",
-    .parameters = WORDS("radius", "tube_radius"),
+    .parameters = WORDS("radius", "tube_radius", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

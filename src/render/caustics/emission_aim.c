@@ -24,8 +24,8 @@ static bool deflects(const plan *p, int priority_index)
 
 static ball ball_of(const plan *p, int priority_index)
 {
-    const solid_shape *shape = &p->geometry->shapes[priority_index];
-    const bounds3 box = shape_world_box(shape);
+    const solid_shape shape = scene_geometry_shape(p->geometry, priority_index);
+    const bounds3 box = shape_world_box(&shape);
     const vec3 half = vec3_scale(vec3_sub(box.high, box.low), 0.5);
     const bool bounded = vec3_is_finite(half);
     return (ball){bounded ? vec3_add(box.low, half) : vec3_make(0.0, 0.0, 0.0), half,

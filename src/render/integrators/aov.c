@@ -33,7 +33,7 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
         return out_of_memory(why);
     for (int i = 0; i < p->geometry->primitive_count; i += p->geometry->primitives[i].rows) {
         const primitive *one = &p->geometry->primitives[i];
-        if (shape_of(&p->geometry->shapes[one->priority_index])->unbounded)
+        if (shape_of(&p->geometry->shapes[p->geometry->origins[one->priority_index].source])->unbounded)
             continue;
         sum += vec3_length(vec3_sub(one->origin, p->view.eye));
         count++;

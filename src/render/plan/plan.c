@@ -2,6 +2,7 @@
 #include "render/plan/plan.h"
 
 #include "base/array.h"
+#include "base/budget.h"
 #include "base/elementary.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
@@ -27,6 +28,12 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
            one.z == other.z;
 }
 
+/* Whether each copy of the solid is a medium of its own. */
+static bool has_own_medium(const scene *s, const material *m)
+{
+    return material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m);
+}
+
 /* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
  * them is no interface unless it is coated, has a thin film, or emits light; crystals must also be alike. With constant
  * weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by solid;
@@ -34,7 +41,7 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m))
+    if (has_own_medium(s, m))
         return solid_index + 1;
     if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
@@ -98,50 +105,65 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     const status code = tree_of(s, i, p, m->data, &source->tree, why);
     bool first = true;
     for (size_t k = 0; k < i; k++)
-        first &= !(s->solids[k].visible && solid_uses_mesh(&s->solids[k], one->mesh));
+        first &= !(s->solids[k].visible && solid_shows_mesh(&s->solids[k], one->mesh));
     if (code == STATUS_OK)
         report_mesh(p, m, shape, source->tree, first);
     return code;
 }
 
+/* Adds the source of the regions of solid i. shape: room for its shape with mesh or points. copies: the number of regions so far. */
+static status add_source(const scene *s, const index_law *laws, int i, plan *p, solid_shape *shape,
+                         region_source *sources, int *count, size_t *copies, diagnostic *why)
+{
+    const solid *one = &s->solids[i];
+    const bool is_mesh = shape_of(&one->shape)->triangles, has_points = scene_points_of(s, one);
+    double shadow_transmittance;
+    if (is_mesh || has_points)
+        *shape = scene_loaded_shape(s, one);
+    if (has_points && !shape->points)
+        return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the points are not loaded", one->name);
+    if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
+        return out_of_memory(why);
+    if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find the light that it transmits */
+        shadow_transmittance = 0.0;
+    region_source source = {.shape = is_mesh || has_points ? shape : &one->shape,
+                            .priority = one->priority,
+                            .medium = medium_of(s, laws, i),
+                            .opaque = solid_is_opaque(s, one),
+                            .shadow_transmittance = shadow_transmittance,
+                            .face_shadow_transmittance = p->shadow_transmittance[i],
+                            .attenuates = material_attenuates(&one->surface) ||
+                                          material_scattering(&one->surface, &s->render) > 0.0 ||
+                                          sheet_acts(&one->surface, &s->render),
+                            .reflects = p->basic && !scene_has_constant_weights(&s->render),
+                            .solid = i};
+    if (is_mesh)
+        TRY(fetch_mesh(s, (size_t)i, p, shape, &source, why));
+    if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
+        source.further_media = (int64_t)(s->solid_count + *copies);
+    *copies += solid_shape_count(source.shape);
+    sources[(*count)++] = source;
+    return STATUS_OK;
+}
+
 static status build_geometry(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
-    region_source *sources = calloc(s->solid_count + 1, sizeof *sources);
-    solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
+    region_source *sources = large_calloc(s->solid_count + 1, sizeof *sources);
+    solid_shape *shapes = large_calloc(s->solid_count + 1, sizeof *shapes);
     p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
     p->own_tree_count = s->solid_count;
     p->shadow_transmittance = calloc(s->solid_count + 1, sizeof *p->shadow_transmittance);
-    if (!sources || !shapes || !p->own_trees || !p->shadow_transmittance) {
-        free(sources);
-        free(shapes);
-        return out_of_memory(why);
-    }
     status code = STATUS_OK;
+    if (!sources || !shapes || !p->own_trees || !p->shadow_transmittance)
+        code = out_of_memory(why);
     int count = 0;
-    for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++) {
-        const solid *one = &s->solids[i];
-        if (!one->visible)
-            continue;
-        double shadow_transmittance;
-        if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
-            code = out_of_memory(why);
-        if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find the light that it transmits */
-            shadow_transmittance = 0.0;
-        sources[count] = (region_source){.shape = &one->shape,
-                                         .priority = one->priority,
-                                         .medium = medium_of(s, laws, i),
-                                         .opaque = solid_is_opaque(s, one),
-                                         .shadow_transmittance = shadow_transmittance,
-                                         .face_shadow_transmittance = p->shadow_transmittance[i],
-                                         .attenuates = material_attenuates(&one->surface) ||
-                                                       material_scattering(&one->surface, &s->render) > 0.0 ||
-                                                       sheet_acts(&one->surface, &s->render),
-                                         .reflects = p->basic && !scene_has_constant_weights(&s->render),
-                                         .solid = i};
-        if (code == STATUS_OK && shape_of(&one->shape)->triangles)
-            code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
-        count++;
-    }
+    size_t copies = 0;
+    for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++)
+        if (s->solids[i].visible)
+            code = add_source(s, laws, i, p, &shapes[i], sources, &count, &copies, why);
+    enum { REGION_BYTES = sizeof(region) + sizeof(primitive) + 256 };
+    THEN(code, memory_budget_check(copies * REGION_BYTES, "use fewer solids or points", why, "a scene of %zu solids",
+                                   copies));
     const bool drawn = integrator_traits_of(&s->render)->drawn;
     const tree_use use = drawn || s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
     THEN(code, scene_geometry_build(sources, count, 0, use, &p->geometry, why));
@@ -276,20 +298,10 @@ static bool add_roughness(const scene *s, plan *p, const material *m)
            rough_energy_add(&p->energy, alpha, material_coating(m, &s->render), material_is_opaque(m));
 }
 
-/* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
-static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
+/* Materials, refractive indices, absorption and shading materials, by priority index. shared: region_materials_make. */
+static status fill_materials(const scene *s, shading_material **shared, plan *p, diagnostic *why)
 {
-    shading_material *shared[SCENE_MATERIALS_MAX] = {NULL};
-    const size_t priority_indices = (size_t)p->geometry->region_count + 1;
-    p->materials = large_calloc(priority_indices, sizeof *p->materials);
-    p->ior = large_calloc(priority_indices, sizeof *p->ior);
-    p->laws = large_calloc(priority_indices, sizeof *p->laws);
-    p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
-    p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
-    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
-    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->shading_materials)
-        return out_of_memory(why);
-    for (size_t r = 0; r < priority_indices; r++) {
+    for (int r = 0; r <= p->geometry->region_count; r++) {
         const int solid_index = p->geometry->regions[r].solid;
         p->laws[r] = &p->solid_laws[solid_index < 0 ? (int)s->solid_count : solid_index];
         p->ior[r] = index_law_at(p->laws[r], s->render.lambda_nm);
@@ -303,6 +315,25 @@ static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
                 return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
+    return STATUS_OK;
+}
+
+/* Fills the tables by priority index. */
+static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
+{
+    const size_t priority_indices = (size_t)p->geometry->region_count + 1;
+    shading_material **shared = calloc(s->material_count + s->solid_count + 1, sizeof(shading_material *));
+    p->materials = large_calloc(priority_indices, sizeof *p->materials);
+    p->ior = large_calloc(priority_indices, sizeof *p->ior);
+    p->laws = large_calloc(priority_indices, sizeof *p->laws);
+    p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
+    p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
+    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
+    const bool room =
+        shared && p->mirrors && p->materials && p->ior && p->laws && p->absorption && p->shading_materials;
+    const status code = room ? fill_materials(s, shared, p, why) : out_of_memory(why);
+    free(shared);
+    TRY(code);
     if (!plan_find_shading_classes(p))
         return out_of_memory(why);
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);

@@ -119,7 +119,8 @@ bool plan_is_plain(const plan *p, int priority_index);
 bool plan_find_shading_classes(plan *p);
 
 /* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface. A
- * solid with an unchanged material borrows them from an earlier region: shared is by material, NULL at first. */
+ * region borrows those of an earlier one with the same unchanged material, or of the same solid. shared: by material,
+ * then by solid; NULL at first. */
 bool region_materials_make(const scene *s, const solid *owner, const material *surface, shading_material **shared,
                            region_materials *out);
 /* The fraction of a shadow ray that a solid's surface transmits: sets *least to the minimum over its faces, and

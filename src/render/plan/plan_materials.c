@@ -29,18 +29,20 @@ bool region_materials_make(const scene *s, const solid *owner, const material *s
                            region_materials *out)
 {
     const int slots = face_material_slots(s, owner);
-    const bool plain = slots == 0 && has_plain_material(s, owner, surface);
+    shading_material **const kept =
+        &shared[has_plain_material(s, owner, surface) ? (size_t)owner->material_index
+                                                      : s->material_count + (size_t)(owner - s->solids)];
     out->shading = (shading_rule)owner->shading;
     out->count = slots > 0 ? slots : 1;
-    if (plain && (out->mat = shared[owner->material_index])) {
+    if (slots == 0 && (out->mat = *kept)) {
         out->borrowed = true;
         return true;
     }
     out->mat = calloc((size_t)out->count, sizeof *out->mat);
     if (!out->mat)
         return false;
-    if (plain)
-        shared[owner->material_index] = out->mat;
+    if (slots == 0)
+        *kept = out->mat;
     out->mat[0] = shading_material_of_solid(s, surface);
     out->mat[0].number = number_of(s, owner, NULL);
     for (int slot = 0; slot < slots; slot++) {
@@ -214,7 +216,8 @@ bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter
         if (per_m == 0.0)
             continue;
         scatter->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
-        add_box(scatter, shape_world_box(&geometry->shapes[r]), count > SCATTER_BOXES_MAX);
+        const solid_shape shape = scene_geometry_shape(geometry, r);
+        add_box(scatter, shape_world_box(&shape), count > SCATTER_BOXES_MAX);
     }
     find_lamps(s, scatter);
     *out = scatter;

@@ -22,14 +22,14 @@ static bool dips_into(const primitive *half, bounds3 b)
 
 static bool may_touch(const scene_geometry *g, int priority_index, int other)
 {
-    const solid_shape *s = &g->shapes[priority_index], *t = &g->shapes[other];
-    const bool endless = shape_of(s)->unbounded, other_endless = shape_of(t)->unbounded;
+    const solid_shape s = scene_geometry_shape(g, priority_index), t = scene_geometry_shape(g, other);
+    const bool endless = shape_of(&s)->unbounded, other_endless = shape_of(&t)->unbounded;
     if (endless && other_endless)
         return true;
     if (endless || other_endless)
         return dips_into(&g->primitives[g->regions[endless ? priority_index : other].outside],
-                         shape_world_box(endless ? t : s));
-    const bounds3 b = shape_world_box(s), c = shape_world_box(t);
+                         shape_world_box(endless ? &t : &s));
+    const bounds3 b = shape_world_box(&s), c = shape_world_box(&t);
     return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
            b.low.z <= c.high.z && c.low.z <= b.high.z;
 }
@@ -121,7 +121,8 @@ static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **o
     const scene_geometry *g = z->frame_plan->geometry;
     const shape_rule *rule = shape_of(shape);
     for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
-        if (shape_of(&g->shapes[g->primitives[z->parts[k].primitive].priority_index]) == rule) {
+        const int other = g->primitives[z->parts[k].primitive].priority_index;
+        if (shape_of(&g->shapes[g->origins[other].source]) == rule) {
             *out = z->parts[k].tessellation;
             mesh_retain(*out);
             return STATUS_OK;
@@ -141,7 +142,7 @@ static status add(zbuffer *z, const region *b, int index, diagnostic *why)
     const scene_geometry *g = z->frame_plan->geometry;
     const primitive *p = &g->primitives[index];
     rasterised_part *part = &z->parts[z->part_count];
-    const solid_shape *shape = &g->shapes[p->priority_index];
+    const solid_shape placed = scene_geometry_shape(g, p->priority_index), *shape = &placed;
     const shape_rule *rule = shape_of(shape);
     *part = (rasterised_part){
         .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->frame_plan->view.eye)};

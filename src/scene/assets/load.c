@@ -223,8 +223,10 @@ static status read_mesh_file(mesh_entry *m, const char *path, const load_limits 
 {
     const mesh_limits import_limits = {.root = limits->root, .triangles = limits->triangles};
     mesh_import *imported;
-    TRY(mesh_read_file(path, &import_limits, &imported, why));
-    status code = make_face_materials(imported, limits->root, &m->shading_materials, why);
+    const bool points = mesh_is_points(path);
+    TRY(points ? mesh_points_read(path, limits->root, &imported, why)
+               : mesh_read_file(path, &import_limits, &imported, why));
+    status code = points ? STATUS_OK : make_face_materials(imported, limits->root, &m->shading_materials, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;
         mesh_retain(m->data);
@@ -315,7 +317,10 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     diagnostic bad = {.what = ""};
     const status code = read_mesh_file(m, path, &s->limits, &bad);
     free(path);
-    return code == STATUS_OK ? code : scene_file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
+    /* an error in a text of points has its own place there */
+    return code == STATUS_OK
+               ? code
+               : scene_file_error(s, m->name, bad.line ? 0 : m->path_line, m->path_column, &bad, code, why);
 }
 
 /* Fails if the triangles of all meshes exceed the limit. `further`: the triangles of m if it is not generated yet. */

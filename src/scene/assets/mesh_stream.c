@@ -1,12 +1,16 @@
 /* Reads the wire format of cuvette-import (import/mesh_wire.h), and finds the images that materials name. */
 #include "scene/assets/mesh_stream.h"
+#include "base/array.h"
 #include "base/cancel.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "import/mesh_wire.h"
+#include "scene/model/solids.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 _Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
@@ -218,6 +222,137 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
     }
     *out = fresh;
     return STATUS_OK;
+}
+
+/* --- points as text --- */
+
+enum { POINTS_BYTES_MAX = 256 << 20 };
+#define POINT_FAR 1e6 /* as the position of a solid in the parameter table */
+
+typedef struct point_reader {
+    const char *name, *at, *line; /* at: the next character; line: the beginning of its line */
+    long number;                  /* of the line, from 1 */
+    diagnostic *why;
+} point_reader;
+
+static status point_error(point_reader *r, const char *remedy, const char *what)
+{
+    long column = 1;
+    for (const char *c = r->line; c < r->at; c++)
+        column += ((unsigned char)*c & 0xc0) != 0x80; /* characters, not bytes */
+    diagnostic_locate(r->why, r->name, r->number, column);
+    return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s", what);
+}
+
+/* Moves past blanks; stops at the end of the line, which is a line feed, or the final 0. */
+static void skip_blanks(point_reader *r)
+{
+    while (*r->at == ' ' || *r->at == '\t' || *r->at == '\r')
+        r->at++;
+}
+
+static bool ends_line(point_reader *r)
+{
+    skip_blanks(r);
+    if (*r->at == '#')
+        r->at += strcspn(r->at, "\n");
+    return *r->at == '\n' || *r->at == 0;
+}
+
+static status read_coordinate(point_reader *r, double *out)
+{
+    char word[64];
+    if (ends_line(r))
+        return point_error(r, "give three numbers: x y z", "a coordinate of the point is missing");
+    const size_t length = strcspn(r->at, " \t\r\n,#");
+    if (length < sizeof word) {
+        memcpy(word, r->at, length);
+        word[length] = 0;
+    }
+    if (length >= sizeof word || !number_parse_real(word, out))
+        return point_error(r, "give three numbers: x y z", "this is not a finite number");
+    if (!(fabs(*out) <= POINT_FAR))
+        return point_error(r, "use coordinates between -1000000 and 1000000", "the coordinate is too large");
+    r->at += length;
+    return STATUS_OK;
+}
+
+/* Reads the three coordinates of a point, and the end of its line. */
+static status read_point(point_reader *r, vec3 *out)
+{
+    double *const coordinate[] = {&out->x, &out->y, &out->z};
+    for (int k = 0; k < 3; k++) {
+        TRY(read_coordinate(r, coordinate[k]));
+        skip_blanks(r);
+        r->at += k < 2 && *r->at == ',';
+    }
+    return ends_line(r) ? STATUS_OK : point_error(r, "give one point a line: x y z", "this follows the three numbers");
+}
+
+/* Fills *points, with *count of them, which the caller frees also after an error. end: of the text. */
+static status read_points(point_reader *r, const char *end, vec3 **points, size_t *count)
+{
+    size_t room = 0;
+    for (;; r->line = ++r->at, r->number++) {
+        if (!ends_line(r)) {
+            if (*count == SCENE_PRIMITIVES_MAX)
+                return point_error(r, "use fewer points", "there are more than 2097151 points");
+            if (!GROW(*points, room, *count + 1))
+                return out_of_memory(r->why);
+            TRY(read_point(r, &(*points)[*count]));
+            ++*count;
+        }
+        if (r->at >= end)
+            return STATUS_OK;
+        if (*r->at == 0)
+            return point_error(r, "save the file as plain text", "the text contains a NUL character");
+        if (cancel_asked_at(*count))
+            return cancel_check(r->why);
+    }
+}
+
+static status make_points(const vec3 *points, size_t count, mesh_import *into, diagnostic *why)
+{
+    TRY(mesh_create(count, 0, false, false, false, &into->mesh, why));
+    memcpy(into->mesh->vertices, points, count * sizeof *points);
+    into->mesh->distinct = true; /* without triangles, equal points are not joined */
+    return mesh_finish(into->mesh, why);
+}
+
+status mesh_points_parse(const char *name, const char *text, size_t size, mesh_import **out, diagnostic *why)
+{
+    point_reader r = {.name = name, .at = text, .line = text, .number = 1, .why = why};
+    vec3 *points = NULL;
+    size_t count = 0;
+    mesh_import *fresh = calloc(1, sizeof *fresh);
+    *out = NULL;
+    status code = fresh ? read_points(&r, text + size, &points, &count) : out_of_memory(why);
+    if (code == STATUS_OK && count == 0)
+        code = point_error(&r, "give one point a line: x y z", "the file has no points");
+    THEN(code, make_points(points, count, fresh, why));
+    free(points);
+    if (code == STATUS_OK)
+        *out = fresh;
+    else
+        mesh_import_destroy(fresh);
+    return code;
+}
+
+bool mesh_is_points(const char *path)
+{
+    const size_t length = strlen(path), ending = sizeof POINTS_ENDING - 1;
+    return length > ending && strcasecmp(path + length - ending, POINTS_ENDING) == 0;
+}
+
+status mesh_points_read(const char *path, const char *root, mesh_import **out, diagnostic *why)
+{
+    char *text;
+    size_t size;
+    *out = NULL;
+    TRY(file_read_below(path, root, POINTS_BYTES_MAX, &text, &size, why));
+    const status code = mesh_points_parse(path, text, size, out, why);
+    free(text);
+    return code;
 }
 
 /* --- images --- */

@@ -54,6 +54,14 @@ typedef struct mesh_source {
 /* STATUS_BAD_INPUT for an invalid stream, STATUS_FAILURE if memory runs out, or the error of source->read. */
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
+/* Points as text: a mesh without triangles and materials. Each line has the three coordinates of a point, separated by
+ * blanks or commas; empty lines, and what follows a #, are skipped. text[size] is 0. STATUS_BAD_INPUT with line and column, also for a
+ * file without points; for more points than a scene can have solids; or for one beyond the memory budget. */
+#define POINTS_ENDING ".xyz"
+bool mesh_is_points(const char *path); /* by the ending of its name */
+status mesh_points_read(const char *path, const char *root, mesh_import **out, diagnostic *why);
+status mesh_points_parse(const char *name, const char *text, size_t size, mesh_import **out, diagnostic *why);
+
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
 
 /* Turns the image names of materials into paths that can be opened: absolute, or relative to the mesh file at `path`.

@@ -220,12 +220,25 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
                     by_face ? "materials by face" : "textures");
 }
 
+static status check_points(const scene *s, const solid *owner, diagnostic *why)
+{
+    const mesh_entry *points = scene_points_of(s, owner);
+    if (!points && shape_has(shape_of(&owner->shape), "points"))
+        return unknown(s, PARAM_MESH, owner->name, owner->points, why);
+    if (points && points->data && (points->data->triangle_count > 0 || points->data->vertex_count == 0))
+        return diagnose(why, STATUS_BAD_INPUT, "give the mesh a file of points, which ends in .xyz",
+                        "%.80s: %.80s is not a file of points", owner->name, points->name);
+    return STATUS_OK;
+}
+
 /* The objects to which the solid refers must exist. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
+    if (owner->points[0])
+        TRY(check_points(s, owner, why));
     if (!shape_of(&owner->shape)->triangles)
         return check_colors(s, owner, why);
     if (!owner->mesh[0])
@@ -234,6 +247,9 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
     TRY(check_colors(s, owner, why));
+    if (m->source == MESH_FILE && m->data && m->data->triangle_count == 0)
+        return diagnose(why, STATUS_BAD_INPUT, "use it as the points of another solid", "%.80s: %.80s has no triangles",
+                        owner->name, m->name);
     return check_closed(s, owner, m, why);
 }
 
@@ -338,7 +354,8 @@ status check_limits(const scene *s, diagnostic *why)
     size_t primitives = 0, unbounded = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         const shape_rule *rule = shape_of(&s->solids[i].shape);
-        primitives += (size_t)shape_primitive_slots(&s->solids[i].shape);
+        const solid_shape shape = s->solids[i].points[0] ? scene_loaded_shape(s, &s->solids[i]) : s->solids[i].shape;
+        primitives += (size_t)shape_primitive_slots(&shape) * solid_shape_count(&shape);
         unbounded += rule->unbounded || rule->triangles;
     }
     if (primitives > SCENE_PRIMITIVES_MAX)

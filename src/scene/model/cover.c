@@ -18,15 +18,22 @@ static placed_shape place_shape(const scene *s, const solid *owner)
     return shape_placed(&shape);
 }
 
+/* Whether the solid is at points that are not loaded, so that its place is unknown. */
+static bool is_placeless(const scene *s, const solid *owner)
+{
+    const mesh_entry *points = scene_points_of(s, owner);
+    return points && !points->data;
+}
+
 const solid *scene_cover(const scene *s, const solid *hidden)
 {
-    if (s->solid_count > COVER_SOLIDS_MAX)
+    if (s->solid_count > COVER_SOLIDS_MAX || hidden->points[0])
         return NULL;
     const placed_shape h = place_shape(s, hidden);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
-        if (rule->covers && scene_has_precedence(cover, hidden)) {
+        if (rule->covers && !cover->points[0] && scene_has_precedence(cover, hidden)) {
             const placed_shape c = place_shape(s, cover);
             if (rule->covers(&c, &h))
                 return cover;
@@ -55,7 +62,7 @@ static bool are_apart(const placed_shape *a, const placed_shape *b)
 bool scene_disjoint(const scene *s, const solid *a, const solid *b)
 {
     const placed_shape one = place_shape(s, a), two = place_shape(s, b);
-    return are_apart(&one, &two);
+    return !is_placeless(s, a) && !is_placeless(s, b) && are_apart(&one, &two);
 }
 
 /* The maximum of direction . p over a rectangle that contains the origins of all camera rays. */
@@ -88,6 +95,8 @@ bool scene_apart_from_eye(const scene *s, const solid *owner)
 {
     const camera_frame view = camera_frame_of(s);
     const placed_shape one = place_shape(s, owner);
+    if (is_placeless(s, owner))
+        return false;
     if (view.parallel || view.lens_radius > 0.0)
         return starts_are_apart(&one, &view);
     const solid_shape point = shape_point(view.eye);
@@ -99,5 +108,5 @@ bool scene_is_behind_camera(const scene *s, const solid *owner)
 {
     const camera_frame view = camera_frame_of(s);
     const placed_shape h = place_shape(s, owner);
-    return placed_limit(&h, view.forward) < vec3_dot(view.forward, view.eye);
+    return !is_placeless(s, owner) && placed_limit(&h, view.forward) < vec3_dot(view.forward, view.eye);
 }

@@ -43,7 +43,7 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
     else if (row->type == PARAM_PATH)
         snprintf(text, size, "path of a file");
     else if (row->type == PARAM_WORD)
-        snprintf(text, size, "name of a %s", row->name);
+        snprintf(text, size, "name of a %s", strcmp(row->name, "texture") == 0 ? row->name : "mesh");
     else if (row->type == PARAM_LIST && !one_element)
         snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
     else if (is_vector(row) && !one_element)

@@ -157,11 +157,17 @@ const mesh_entry *scene_mesh_of(const scene *s, const solid *owner)
     return shape_of(&owner->shape)->triangles ? scene_find_mesh(s, owner->mesh) : NULL;
 }
 
+const mesh_entry *scene_points_of(const scene *s, const solid *owner)
+{
+    return owner->points[0] && shape_has(shape_of(&owner->shape), "points") ? scene_find_mesh(s, owner->points) : NULL;
+}
+
 solid_shape scene_loaded_shape(const scene *s, const solid *owner)
 {
     solid_shape shape = owner->shape;
-    const mesh_entry *m = scene_mesh_of(s, owner);
+    const mesh_entry *m = scene_mesh_of(s, owner), *points = scene_points_of(s, owner);
     shape.mesh = m ? m->data : NULL;
+    shape.points = points ? points->data : NULL;
     return shape;
 }
 

@@ -41,7 +41,9 @@ int scene_find_solid(const scene *s, const char *name);
 const mesh_entry *scene_find_mesh(const scene *s, const char *name);
 /* The mesh of a solid; NULL for shapes without triangles, or if the mesh does not exist. */
 const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
-/* The solid's shape, with the triangles of its mesh if they are loaded. */
+/* The mesh at whose vertices a solid is repeated; NULL if it is not, or if the mesh does not exist. */
+const mesh_entry *scene_points_of(const scene *s, const solid *owner);
+/* The solid's shape, with the triangles of its mesh, or its points, if they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 

@@ -86,9 +86,15 @@ void texture_entry_unload(texture_entry *t)
     t->data = NULL;
 }
 
-bool solid_uses_mesh(const solid *owner, const char *mesh_name)
+bool solid_shows_mesh(const solid *owner, const char *mesh_name)
 {
     return shape_of(&owner->shape)->triangles && strcmp(owner->mesh, mesh_name) == 0;
+}
+
+bool solid_uses_mesh(const solid *owner, const char *mesh_name)
+{
+    const bool repeated = owner->points[0] && shape_has(shape_of(&owner->shape), "points");
+    return solid_shows_mesh(owner, mesh_name) || (repeated && strcmp(owner->points, mesh_name) == 0);
 }
 
 /* --- slimes --- */

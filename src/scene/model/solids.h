@@ -22,16 +22,19 @@ enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 typedef struct solid {
     char *name;
     solid_shape shape;
-    int64_t priority;              /* the highest has precedence where solids overlap; among equals the first in the
+    int64_t priority;                /* the highest has precedence where solids overlap; among equals the first in the
                                       scene */
-    int64_t visible;               /* 0: omitted from the scene */
-    char mesh[SCENE_NAME_MAX + 1]; /* name of the mesh, for shape mesh */
-    int64_t shading;               /* shading_rule, for meshes */
-    int material_index;            /* index in scene.materials; -1 for none */
-    material surface;              /* a copy of the material, with the solid's changes */
+    int64_t visible;                 /* 0: omitted from the scene */
+    char mesh[SCENE_NAME_MAX + 1];   /* name of the mesh, for shape mesh */
+    char points[SCENE_NAME_MAX + 1]; /* name of the mesh at whose vertices the solid is repeated; "" for one solid */
+    int64_t shading;                 /* shading_rule, for meshes */
+    int material_index;              /* index in scene.materials; -1 for none */
+    material surface;                /* a copy of the material, with the solid's changes */
 } solid;
 
 /* Whether the solid's shape has triangles and it refers to this mesh. */
+bool solid_shows_mesh(const solid *owner, const char *mesh_name);
+/* The same, or the solid is repeated at the vertices of this mesh. */
 bool solid_uses_mesh(const solid *owner, const char *mesh_name);
 
 enum { SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };

@@ -81,7 +81,7 @@ static void pick_copies(const search *q, motion_place *best)
 
 static bool is_wanted(const solid *one, const char *mesh_name, int solid_or_any, size_t index)
 {
-    const bool shows = solid_uses_mesh(one, mesh_name);
+    const bool shows = solid_shows_mesh(one, mesh_name);
     return solid_or_any == MOTION_ANY_SOLID ? shows && one->visible : solid_or_any == (int)index;
 }
 

@@ -246,6 +246,8 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
         solid *owner = &s->solids[i];
         if (at->object_group == PARAM_MESH && strcmp(owner->mesh, from) == 0)
             strcpy(owner->mesh, to);
+        if (at->object_group == PARAM_MESH && strcmp(owner->points, from) == 0)
+            strcpy(owner->points, to);
         if (at->object_group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
     }

@@ -62,8 +62,15 @@ bool placement_bounding_sphere(const scene *s, const solid *of, vec3 *centre, do
     if (shape_of(&shape)->unbounded)
         return false;
     const shape_extent e = shape_of(&shape)->extent(&shape);
-    const vec3 middle = vec3_scale(vec3_add(e.box.low, e.box.high), 0.5);
+    vec3 middle = vec3_scale(vec3_add(e.box.low, e.box.high), 0.5);
     *radius = e.ball;
+    if (shape.points) {
+        const bounds3 b = shape.points->bounds;
+        const vec3 k = shape.scale, of_points = vec3_scale(vec3_add(b.low, b.high), 0.5),
+                   half = vec3_scale(vec3_sub(b.high, b.low), 0.5);
+        middle = vec3_add(middle, vec3_make(k.x * of_points.x, k.y * of_points.y, k.z * of_points.z));
+        *radius += vec3_length(vec3_make(k.x * half.x, k.y * half.y, k.z * half.z));
+    }
     *centre = vec3_add(shape.position, mat3_apply(rotation_from_deg(shape.rotation_deg), middle));
     return true;
 }
