@@ -113,7 +113,11 @@ static inline bool region_casts_shadow(const region *b, bool solid_shadows)
 }
 
 /* The shape of a region, without points. */
-solid_shape scene_geometry_shape(const scene_geometry *g, int priority_index);
+static inline solid_shape scene_geometry_shape(const scene_geometry *g, int priority_index)
+{
+    const region_origin from = g->origins[priority_index];
+    return solid_shape_copy(&g->shapes[from.source], from.copy);
+}
 
 /* Description of a solid for scene_geometry_build, which has a region for each of its points. */
 typedef struct region_source {

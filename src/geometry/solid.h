@@ -65,7 +65,8 @@ solid_shape solid_shape_copy(const solid_shape *shape, size_t i);
 /* Checks the parameters, and constraints between them such as inner_radius < radius. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh and for points. */
+/* Whether the closed solid contains the point, by its definition. For tests and hints. Always false for a mesh and for
+ * a solid at points. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation matrix of rotation_deg: local to world. A positive angle takes y to z about x, z to x about y, x to y

@@ -1,4 +1,5 @@
-/* A triangle mesh, or a cloud of points without triangles: indexed vertices with optional normals and texture coordinates, and one material slot per face.
+/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face;
+ * without triangles, a cloud of points.
  * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
  * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
  * once in each direction, is closed: it bounds a volume, which is behind the fronts.

@@ -36,12 +36,6 @@ static void order_by_priority(const region_source *sources, int count, ordered_s
             origins[r++] = (region_origin){(uint32_t)order[i].index, (uint32_t)copy};
 }
 
-solid_shape scene_geometry_shape(const scene_geometry *g, int priority_index)
-{
-    const region_origin from = g->origins[priority_index];
-    return solid_shape_copy(&g->shapes[from.source], from.copy);
-}
-
 /* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
  * from outside. */
 static const vec3 *add_normals(scene_geometry *g, int sides)

@@ -59,6 +59,12 @@ vec3 placed_axis(const mat3 *turn, int k)
     return mat3_apply(*turn, vec3_make(k == 0, k == 1, k == 2));
 }
 
+double points_reach(const solid_shape *shape, vec3 d)
+{
+    const vec3 s = shape->scale;
+    return shape->points ? box_reach(shape->points->bounds, vec3_make(s.x * d.x, s.y * d.y, s.z * d.z)) : 0.0;
+}
+
 double placed_limit(const placed_shape *placed, vec3 direction)
 {
     const solid_shape *shape = &placed->shape;

@@ -88,19 +88,6 @@ placed_shape shape_placed(const solid_shape *shape)
     return (placed_shape){*shape, rotation_from_deg(shape->rotation_deg), shape_of(shape)};
 }
 
-/* The maximum of d . p over a box. */
-static double box_reach(bounds3 b, vec3 d)
-{
-    return (d.x > 0.0 ? b.high.x : b.low.x) * d.x + (d.y > 0.0 ? b.high.y : b.low.y) * d.y +
-           (d.z > 0.0 ? b.high.z : b.low.z) * d.z;
-}
-
-double points_reach(const solid_shape *shape, vec3 d)
-{
-    const vec3 s = shape->scale;
-    return shape->points ? box_reach(shape->points->bounds, vec3_make(s.x * d.x, s.y * d.y, s.z * d.z)) : 0.0;
-}
-
 double shape_reach(const solid_shape *shape, vec3 d)
 {
     const shape_rule *rule = shape_of(shape);

@@ -120,6 +120,13 @@ double round_distance(const round_frame *frame, vec3 point);
 /* An upper bound of round_distance over all points of the shape. */
 double placed_farthest_from(const placed_shape *placed, const round_frame *frame);
 
+/* The maximum of d . p over a box. */
+static inline double box_reach(bounds3 b, vec3 d)
+{
+    return (d.x > 0.0 ? b.high.x : b.low.x) * d.x + (d.y > 0.0 ? b.high.y : b.low.y) * d.y +
+           (d.z > 0.0 ? b.high.z : b.low.z) * d.z;
+}
+
 /* What the points of a shape add to its reach along a local direction: the maximum over their bounding box, or 0. */
 double points_reach(const solid_shape *shape, vec3 direction);
 /* The maximum along a local direction: `farthest`, but for a mesh, and for points, over the bounding box. */

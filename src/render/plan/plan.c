@@ -111,7 +111,8 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     return code;
 }
 
-/* Adds the source of the regions of solid i. shape: room for its shape with mesh or points. copies: the number of regions so far. */
+/* Adds the source of the regions of solid i. shape: room for its shape with mesh or points; copies: the number of
+ * regions so far. */
 static status add_source(const scene *s, const index_law *laws, int i, plan *p, solid_shape *shape,
                          region_source *sources, int *count, size_t *copies, diagnostic *why)
 {

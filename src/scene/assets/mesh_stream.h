@@ -55,8 +55,8 @@ typedef struct mesh_source {
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
 /* Points as text: a mesh without triangles and materials. Each line has the three coordinates of a point, separated by
- * blanks or commas; empty lines, and what follows a #, are skipped. text[size] is 0. STATUS_BAD_INPUT with line and column, also for a
- * file without points; for more points than a scene can have solids; or for one beyond the memory budget. */
+ * blanks or commas; empty lines, and what follows a #, are skipped. text[size] is 0. STATUS_BAD_INPUT with line and
+ * column, also for a file without points, and for more points than a scene can have solids. */
 #define POINTS_ENDING ".xyz"
 bool mesh_is_points(const char *path); /* by the ending of its name */
 status mesh_points_read(const char *path, const char *root, mesh_import **out, diagnostic *why);
