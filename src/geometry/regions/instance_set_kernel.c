@@ -110,8 +110,13 @@ static bool ray_in(const traversal *q, const instanced_mesh *p, uint32_t copy, m
         local->t_min += q->beyond;
     if (q->all)
         local->facing = FACING_ANY;
+    return true;
+}
+
+static bool misses_copy(const instanced_mesh *p, const mesh_ray *local)
+{
     const bounds3 *box = &p->triangles->bounds;
-    return !ray_misses_box(box->low, box->high, local->origin, local->direction);
+    return ray_misses_box(box->low, box->high, local->origin, local->direction) != 0;
 }
 
 /* At equal distances the lower face number wins, so that the result is independent of the order. */
@@ -146,13 +151,14 @@ static const instanced_mesh *part_of_instance(const instance_set *f, size_t inst
     return p;
 }
 
-/* Counts the queries of rays in a copy's frame, if requested; separate from the traversal, so as not to slow it
- * down. */
+/* Counts the queries of rays in a copy's frame that may meet it, if requested; separate from the traversal, so as not
+ * to slow it down. */
 static void count_queries(const instanced_mesh *p, const mesh_ray *local, int count, enum query_mode mode,
                           query_counts *counts)
 {
     for (int k = 0; counts && k < count; k++)
-        hierarchy_count(p->tree, &local[k], mode, counts);
+        if (!misses_copy(p, &local[k]))
+            hierarchy_count(p->tree, &local[k], mode, counts);
 }
 
 static void query_copy(traversal *q, size_t instance)
@@ -160,7 +166,7 @@ static void query_copy(traversal *q, size_t instance)
     const instanced_mesh *p = part_of_instance(q->f, instance);
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
     mesh_ray local;
-    if (!ray_in(q, p, copy, &local))
+    if (!ray_in(q, p, copy, &local) || misses_copy(p, &local))
         return;
     count_queries(p, &local, 1, q->all ? QUERY_ALL : q->any ? QUERY_ANY : QUERY_NEAREST, q->ray->counts);
     if (q->all) {
@@ -204,18 +210,21 @@ static void query(traversal *q)
 /* Up to this number of copies it is faster to traverse them in turn, each with all rays as a packet. */
 enum { FEW_COPIES = 8 };
 
+/* The box of a single copy is not tested: the box around all meshes has decided for the batch, and the root of the
+ * hierarchy decides again. */
 static void nearest_of_copy(const instance_set *f, size_t instance, const instance_ray *rays, int count,
                             instance_hit *hits)
 {
     const instanced_mesh *p = part_of_instance(f, instance);
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
+    const bool boxed = f->instance_count > 1;
     mesh_ray local[BATCH];
     mesh_hit found[BATCH];
     int ray[BATCH], queued = 0;
     for (int i = 0; i < count; i++) {
         traversal q = traversal_of(f, &rays[i]);
         q.t_max = hits[i].face == FACE_NONE ? q.t_max : hits[i].t;
-        if (ray_in(&q, p, copy, &local[queued]))
+        if (ray_in(&q, p, copy, &local[queued]) && !(boxed && misses_copy(p, &local[queued])))
             ray[queued++] = i;
     }
     if (queued == 0)
@@ -256,13 +265,15 @@ static void nearest(const instance_set *f, const instance_ray *rays, int count, 
 static void any_of_copy(const instance_set *f, size_t instance, const instance_ray *rays, int count, bool *blocked)
 {
     const instanced_mesh *p = part_of_instance(f, instance);
+    const uint32_t copy = (uint32_t)(instance - p->first_instance);
+    const bool boxed = f->instance_count > 1;
     mesh_ray local[BATCH];
     bool found[BATCH];
     int ray[BATCH], queued = 0;
     for (int i = 0; i < count; i++) {
         traversal q = traversal_of(f, &rays[i]);
         q.any = true;
-        if (!blocked[i] && ray_in(&q, p, (uint32_t)(instance - p->first_instance), &local[queued]))
+        if (!blocked[i] && ray_in(&q, p, copy, &local[queued]) && !(boxed && misses_copy(p, &local[queued])))
             ray[queued++] = i;
     }
     if (queued == 0)
