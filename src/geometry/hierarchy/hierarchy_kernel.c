@@ -147,7 +147,7 @@ static int push_children(const hierarchy *h, const packet *p, uint32_t at, const
     _Alignas(32) float near[WIDTH], far[WIDTH];
     bounds_of_distances(p, node, near, far);
     const int bottom = top;
-    for (uint64_t hit = lanes_of8(floats_at(near) <= floats_at(far)); hit; hit = LANES_LESS_FIRST(hit)) {
+    for (uint64_t hit = lanes_ordered(near, far); hit; hit = LANES_LESS_FIRST(hit)) {
         const unsigned slot = lane_first(hit);
         fetch_child(h, nodes[at].child[slot], block_bytes);
         int position = top++;

@@ -13,6 +13,8 @@ typedef float float4 __attribute__((vector_size(16)));
 typedef float float8 __attribute__((vector_size(32)));
 typedef int32_t int8x32 __attribute__((vector_size(32)));
 typedef int32_t int16x32 __attribute__((vector_size(64)));
+typedef int32_t int4x32 __attribute__((vector_size(16)));
+typedef int64_t int2x64 __attribute__((vector_size(16)));
 typedef double double4 __attribute__((vector_size(32)));
 typedef double double8 __attribute__((vector_size(64)));
 typedef int64_t int8x64 __attribute__((vector_size(64)));
@@ -85,16 +87,28 @@ ALWAYS_INLINE unsigned bits_of16(const int32_t *mask)
     return (unsigned)((set[0] & ones) * pack >> 56 | (set[1] & ones) * pack >> 56 << 8);
 }
 #else
+/* The lanes of two vectors, whose elements are single bits. */
+ALWAYS_INLINE uint64_t lanes_of_bits(int4x32 low, int4x32 high)
+{
+    const int2x64 halves = (int2x64)(low | high);
+    const uint64_t both = (uint64_t)(halves[0] | halves[1]);
+    return (uint32_t)both | (uint32_t)(both >> 32);
+}
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {
-    int4x64 half = (int4x64)(mask & (int8x32){1, 2, 4, 8, 16, 32, 64, 128});
-    uint64_t both = (uint64_t)((half[0] | half[2]) | (half[1] | half[3]));
-    return (both | both >> 32) & 0xff;
+    mask &= (int8x32){1, 2, 4, 8, 16, 32, 64, 128};
+    return lanes_of_bits(__builtin_shufflevector(mask, mask, 0, 1, 2, 3),
+                         __builtin_shufflevector(mask, mask, 4, 5, 6, 7));
 }
 ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
 {
     mask &= (int4x64){1, 2, 4, 8};
+#ifdef __AVX2__
+    const int2x64 halves = __builtin_shufflevector(mask, mask, 0, 1) | __builtin_shufflevector(mask, mask, 2, 3);
+    return (unsigned)(halves[0] | halves[1]);
+#else
     return (unsigned)((mask[0] | mask[2]) | (mask[1] | mask[3]));
+#endif
 }
 ALWAYS_INLINE unsigned lane_first(uint64_t set)
 {
@@ -114,3 +128,17 @@ ALWAYS_INLINE unsigned bits_of16(const int32_t *mask)
 }
 #endif
 #define LANES_LESS_FIRST(set) ((set) & ((set)-1))
+
+/* The lanes in which a is at most b. Without AVX in halves: gcc 12 compares the elements of wider vectors one by
+ * one. */
+ALWAYS_INLINE uint64_t lanes_ordered(const float *a, const float *b)
+{
+#ifdef __AVX__
+    return lanes_of8(floats_at(a) <= floats_at(b));
+#else
+    float4 low[2], high[2];
+    memcpy(low, a, sizeof low);
+    memcpy(high, b, sizeof high);
+    return lanes_of_bits((low[0] <= high[0]) & (int4x32){1, 2, 4, 8}, (low[1] <= high[1]) & (int4x32){16, 32, 64, 128});
+#endif
+}
