@@ -50,10 +50,11 @@ ALWAYS_INLINE unsigned maybe_inside(const packet *p, int i, const float (*corner
     _Alignas(64) int32_t inside[LANES];
     /* VECTORISE */
     for (int k = 0; k < LANES; k++) {
-        const float x0 = (cx0 - sx[k] * cz0) - bx[k], y0 = (cy0 - sy[k] * cz0) - by[k];
-        const float x1 = (cx1 - sx[k] * cz1) - bx[k], y1 = (cy1 - sy[k] * cz1) - by[k];
-        const float x2 = (cx2 - sx[k] * cz2) - bx[k], y2 = (cy2 - sy[k] * cz2) - by[k];
-        const float u = x2 * y1 - y2 * x1, v = x0 * y2 - y0 * x2, w = x1 * y0 - y1 * x0;
+        const float x0 = MULTIPLY_ADD(-sx[k], cz0, cx0 - bx[k]), y0 = MULTIPLY_ADD(-sy[k], cz0, cy0 - by[k]);
+        const float x1 = MULTIPLY_ADD(-sx[k], cz1, cx1 - bx[k]), y1 = MULTIPLY_ADD(-sy[k], cz1, cy1 - by[k]);
+        const float x2 = MULTIPLY_ADD(-sx[k], cz2, cx2 - bx[k]), y2 = MULTIPLY_ADD(-sy[k], cz2, cy2 - by[k]);
+        const float u = MULTIPLY_ADD(x2, y1, -(y2 * x1)), v = MULTIPLY_ADD(x0, y2, -(y0 * x2)),
+                    w = MULTIPLY_ADD(x1, y0, -(y1 * x0));
         const float uv = u < v ? u : v, vu = u > v ? u : v;
         const float least = uv < w ? uv : w, most = vu > w ? vu : w;
         /* one is certainly below zero and another above: the ray passes outside */
@@ -227,22 +228,34 @@ ALWAYS_INLINE double corner_of(const void *block, bool single, int corner, int a
                   : ((const block_double *)block)->corner[corner][axis][lane];
 }
 
+/* The rays of a set, and the groups that have any. */
+typedef struct leaf_groups {
+    ray_set rays;
+    int count, number[GROUPS];
+} leaf_groups;
+
 /* Tests the triangle in a lane of a block. */
-ALWAYS_INLINE void test_triangle(packet *p, const ray_set *set, enum query_mode mode, const void *block, bool single,
-                                 int lane, const leaf_errors *errors, uint32_t triangle)
+ALWAYS_INLINE void test_triangle(packet *p, const leaf_groups *groups, enum query_mode mode, const void *block,
+                                 bool single, int lane, const leaf_errors *errors, uint32_t triangle)
 {
     float turned[3][3];
     for (int k = 0; k < 3; k++)
         for (int j = 0; j < 3; j++)
             turned[k][j] = (float)corner_of(block, single, j, p->axis[k], lane);
+    /* First all groups, without a branch that depends on their rays: the processor would often guess it wrong. */
+    weights f[GROUPS];
+    uint16_t inside[GROUPS];
+    for (int i = 0; i < groups->count; i++) {
+        const int g = groups->number[i];
+        inside[i] = (uint16_t)(maybe_inside(p, g * LANES, (const float(*)[3])turned, errors->edge, &f[i]) &
+                               groups->rays.bits[g]);
+    }
     uint64_t words[PACKET_MAX / 64] = {0};
-    for (int g = 0; g < p->groups; g++) {
-        unsigned bits = set->bits[g] & p->alive.bits[g];
-        weights f;
+    for (int i = 0; i < groups->count; i++) {
+        const int g = groups->number[i];
+        const unsigned bits = inside[i] & p->alive.bits[g];
         if (bits)
-            bits &= maybe_inside(p, g * LANES, (const float(*)[3])turned, errors->edge, &f);
-        if (bits)
-            words[g / 4] |= (uint64_t)(bits & maybe_in_range(p, g * LANES, turned[2], errors, &f)) << g % 4 * LANES;
+            words[g / 4] |= (uint64_t)(bits & maybe_in_range(p, g * LANES, turned[2], errors, &f[i])) << g % 4 * LANES;
     }
     uint8_t slots[PACKET_MAX];
     int count = 0;
@@ -261,8 +274,8 @@ ALWAYS_INLINE void test_triangle(packet *p, const ray_set *set, enum query_mode 
     packet_test(p, slots, count, mode, (const double(*)[3])corner, triangle);
 }
 
-ALWAYS_INLINE void test_leaf(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t leaf,
-                             const leaf_errors *errors, bool single)
+ALWAYS_INLINE void test_leaf(const hierarchy *h, packet *p, const leaf_groups *groups, enum query_mode mode,
+                             uint32_t leaf, const leaf_errors *errors, bool single)
 {
     for (uint32_t b = child_first_block(leaf); b < child_first_block(leaf) + child_blocks(leaf); b++) {
         const block_single *floats = (const block_single *)h->blocks + b;
@@ -270,7 +283,7 @@ ALWAYS_INLINE void test_leaf(const hierarchy *h, packet *p, const ray_set *set, 
         const void *block = single ? (const void *)floats : (const void *)doubles;
         const uint32_t *numbers = single ? floats->triangle : doubles->triangle;
         for (int lane = 0; lane < BLOCK && !(lane > 0 && numbers[lane] == numbers[lane - 1]); lane++)
-            test_triangle(p, set, mode, block, single, lane, errors, numbers[lane]);
+            test_triangle(p, groups, mode, block, single, lane, errors, numbers[lane]);
     }
 }
 
@@ -278,10 +291,15 @@ void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum
                          uint32_t slot)
 {
     const leaf_errors errors = errors_of(p, node, slot);
+    leaf_groups groups = {.rays = *set};
+    for (int g = 0; g < p->groups; g++) {
+        groups.number[groups.count] = g;
+        groups.count += set->bits[g] != 0;
+    }
     if (h->single)
-        test_leaf(h, p, set, mode, node->child[slot], &errors, true);
+        test_leaf(h, p, &groups, mode, node->child[slot], &errors, true);
     else
-        test_leaf(h, p, set, mode, node->child[slot], &errors, false);
+        test_leaf(h, p, &groups, mode, node->child[slot], &errors, false);
     if (p->changed)
         p->t_farthest = most_of_row(p->t_best, p->groups * LANES);
     p->changed = false;
