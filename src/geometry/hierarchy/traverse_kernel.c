@@ -50,6 +50,14 @@ ALWAYS_INLINE int push_sorted(const bvh_node *node, const float *nears, uint64_t
     return top;
 }
 
+/* Prefetches children on the stack: of a hierarchy that does not fit into the cache, whose rays would wait for them. */
+ALWAYS_INLINE void fetch_pending(const hierarchy *h, bool single, const uint64_t *stack, int first, int end)
+{
+    enum { CACHED_BYTES = 4 << 20 /* twice the second-level cache of a core */ };
+    for (int i = first; h->report.bytes > CACHED_BYTES && i < end; i++)
+        fetch_child(h, (uint32_t)stack[i], single ? sizeof(block_single) : sizeof(block_double));
+}
+
 ALWAYS_INLINE void traverse_from(const hierarchy *h, ray_query *q, const box_ray *ray, enum query_mode mode,
                                  bool single, uint32_t at)
 {
@@ -75,10 +83,13 @@ ALWAYS_INLINE void traverse_from(const hierarchy *h, ray_query *q, const box_ray
                 const uint64_t first = pending(nears[one], node->child[one]),
                                second = pending(nears[two], node->child[two]);
                 stack[top++] = first > second ? first : second;
+                fetch_pending(h, single, stack, top - 1, top);
                 at = (uint32_t)(first > second ? second : first);
                 continue;
             }
+            const int bottom = top;
             top = push_sorted(node, nears, set, stack, top);
+            fetch_pending(h, single, stack, bottom, top - 1);
             at = (uint32_t)stack[--top];
         }
         if (query_blocks(q, h, mode, single, child_first_block(at), child_blocks(at)))
