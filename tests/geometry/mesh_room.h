@@ -152,7 +152,7 @@ static inline void mesh_room_arrange(mesh_room *m)
                                      .opaque = m->r.opaque[i],
                                      .shadow_transmittance = m->r.opaque[i] ? 0.0 : m->r.shadow_transmittance[i],
                                      .solid = i};
-    assert_int_equal(scene_geometry_build(sources, m->r.count, 0, TREE_IF_MANY, &m->r.solids, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, m->r.count, 0, TREE_IF_TOO_MANY, &m->r.solids, NULL), STATUS_OK);
 }
 
 /* About two thirds of the solids are meshes; on the grid they are boxes whose faces and copies often coincide. */

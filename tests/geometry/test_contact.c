@@ -232,7 +232,7 @@ static void assemble(assembly *m, vec3 turn)
                                      .shadow_transmittance = 1.0,
                                      .solid = i};
     }
-    assert_int_equal(scene_geometry_build(sources, m->count, 0, TREE_IF_MANY, &m->solids, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, m->count, 0, TREE_IF_TOO_MANY, &m->solids, NULL), STATUS_OK);
 }
 
 /* The media in order along the line, as digits: "01230". */

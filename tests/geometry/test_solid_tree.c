@@ -334,6 +334,63 @@ static void a_hundred_equal_balls_in_one_place_are_one(void **state)
     scene_geometry_destroy(a);
 }
 
+/* The distance of a point from the segment o .. o + d. */
+static double distance_from_segment(vec3 point, vec3 o, vec3 d)
+{
+    const vec3 from = vec3_sub(point, o);
+    const double t = fmin(fmax(vec3_dot(from, d) / vec3_dot(d, d), 0.0), 1.0);
+    return vec3_length(vec3_sub(from, vec3_scale(d, t)));
+}
+
+enum { CLOUD = 300 };
+
+/* Batches of shadow rays in all directions, some parallel to an axis, through a cloud of opaque balls. None starts in a
+ * ball. */
+static void a_cloud_of_balls_casts_the_shadows_of_its_closed_form(void **state)
+{
+    (void)state;
+    static ray_scratch scratch;
+    static double light[ROW];
+    static bundle u;
+    static solid_shape ball[CLOUD];
+    static region_source sources[CLOUD];
+    uint64_t seed = 308;
+    int blocked = 0, clear = 0;
+    for (int i = 0; i < CLOUD; i++) {
+        ball[i] = (solid_shape){
+            .kind = SHAPE_SPHERE, .position = random_point(&seed, 2.0), .radius = random_real(&seed, 0.01, 0.2)};
+        sources[i] = (region_source){.shape = &ball[i], .priority = i, .medium = 1, .opaque = true, .solid = i};
+    }
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, CLOUD, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    for (int trial = 0; trial < 60; trial++) {
+        for (int i = 0; i < CONE; i++) {
+            vec3 o, d = vec3_sub(random_point(&seed, 3.0), random_point(&seed, 3.0));
+            do
+                o = random_point(&seed, 3.0);
+            while (scene_geometry_inside(a, o) != 0);
+            d = i % 8 ? d : vec3_make(d.x, i % 16 ? -0.0 : 0.0, i % 24 ? d.z : 0.0);
+            u.o[0][i] = o.x, u.o[1][i] = o.y, u.o[2][i] = o.z, u.d[0][i] = d.x, u.d[1][i] = d.y, u.d[2][i] = d.z;
+            u.start[i] = FACE_NONE, u.tree[i] = 0;
+        }
+        const ray_batch batch = batch_of(&u, u.tree);
+        for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
+            kernels_of((isa)level)->shadow(a, &batch, 0, &scratch, light);
+            for (int i = 0; i < CONE; i++) {
+                const vec3 o = vec3_make(u.o[0][i], u.o[1][i], u.o[2][i]),
+                           d = vec3_make(u.d[0][i], u.d[1][i], u.d[2][i]);
+                double deepest = -1.0;
+                for (int k = 0; k < CLOUD; k++)
+                    deepest = fmax(deepest, ball[k].radius - distance_from_segment(ball[k].position, o, d));
+                assert_true(light[i] == (deepest > 0.0 ? 0.0 : 1.0) || fabs(deepest) < 1e-9);
+                *(deepest > 0.0 ? &blocked : &clear) += 1;
+            }
+        }
+    }
+    assert_true(blocked > 1000 && clear > 1000);
+    scene_geometry_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +402,7 @@ int main(void)
         cmocka_unit_test(bundles_meet_what_they_meet_among_direct_primitives),
         cmocka_unit_test(a_ray_through_200_shells_obeys_the_law_of_bouguer),
         cmocka_unit_test(a_hundred_equal_balls_in_one_place_are_one),
+        cmocka_unit_test(a_cloud_of_balls_casts_the_shadows_of_its_closed_form),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

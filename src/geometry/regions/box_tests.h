@@ -1,10 +1,11 @@
-/* Conservative tests of rays with boxes: of one ray with the eight boxes of a node of a solid tree, and whether a ray
- * misses one box. Pure; cannot fail. */
+/* Conservative tests of rays with boxes: whether a ray misses one box; which boxes of a node of a solid tree it enters;
+ * and traversals of the tree, by one ray or by the rays of a batch. Pure; cannot fail. */
 #pragma once
 
 #include "base/isa.h"
 #include "base/lanes.h"
 #include "base/vec3.h"
+#include "geometry/hierarchy/query.h"
 #include "geometry/rays.h"
 #include "geometry/regions/solid_tree.h"
 
@@ -35,17 +36,10 @@ static inline int64_t ray_misses_box(vec3 low, vec3 high, vec3 o, vec3 d)
 /* --- the boxes of a node ---
  *
  * No box that the exact ray enters between t_min and t_max is missed: box planes are rounded outwards, and distances
- * are widened by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). For the rounding of
- * the origin the boxes are widened. */
+ * are widened by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). */
 
 #define BOXES_SLACK 0x1p-20f /* relative; more than the roundings of an origin, an inverse, a difference, a product */
 #define BOXES_TINY 1e-30f    /* replaces a smaller component, whose inverse could be infinite */
-
-typedef struct boxes_ray {
-    float origin[3], inverse[3];
-    float margin; /* of the boxes, for the rounding of the origin */
-    float t_min, t_max;
-} boxes_ray;
 
 ALWAYS_INLINE float boxes_inverse(double d)
 {
@@ -77,6 +71,68 @@ ALWAYS_INLINE float boxes_max(float a, float b)
     return a > b ? a : b;
 }
 
+/* A ray prepared for the test, as for a mesh (query.h), whose margin bounds the same errors. */
+typedef struct boxes_ray {
+    box_ray box;
+    float t_max;
+} boxes_ray;
+
+/* A component below 2^-40 of the largest is replaced by it. Up to its exit from a box, the ray moves at most the reach
+ * plus the origin's largest coordinate along its largest component, and so less than the margin across these planes. */
+#define BOXES_PARALLEL 0x1p-40f
+
+ALWAYS_INLINE boxes_ray boxes_ray_start(const solid_boxes *b, vec3 origin, vec3 direction, double t_min, double t_max)
+{
+    const float o[3] = {(float)origin.x, (float)origin.y, (float)origin.z};
+    const float d[3] = {(float)direction.x, (float)direction.y, (float)direction.z};
+    const float largest = boxes_max(__builtin_fabsf(d[0]), boxes_max(__builtin_fabsf(d[1]), __builtin_fabsf(d[2])));
+    const float least = largest * BOXES_PARALLEL;
+    const float far = boxes_max(__builtin_fabsf(o[0]), boxes_max(__builtin_fabsf(o[1]), __builtin_fabsf(o[2])));
+    const float margin = box_margin(b->reach, far);
+    boxes_ray r = {.box = {.t_min = float_below(t_min)}, .t_max = float_above(t_max)};
+    for (int k = 0; k < 3; k++) {
+        const float inverse = 1.0f / (__builtin_fabsf(d[k]) < least ? __builtin_copysignf(least, d[k]) : d[k]);
+        const bool down = inverse < 0.0f; /* also for a component of -0.0 */
+        r.box.inverse[k] = inverse;
+        r.box.near_offset[k] = -o[k] * inverse - margin * __builtin_fabsf(inverse);
+        r.box.far_offset[k] = -o[k] * inverse + margin * __builtin_fabsf(inverse);
+        r.box.near[k] = down ? high_planes(k) : low_planes(k);
+        r.box.far[k] = down ? low_planes(k) : high_planes(k);
+    }
+    return r;
+}
+
+/* The planes of a node's boxes at an offset (query.h). */
+ALWAYS_INLINE const float *boxes_planes(const boxes_node *n, size_t offset)
+{
+    return (const float *)(const void *)((const char *)n + offset);
+}
+
+/* The children of a node, as lanes, that the ray may enter before its t_max; near: the t at which it enters each. */
+ALWAYS_INLINE uint64_t boxes_entered(const boxes_node *n, const boxes_ray *r, float *restrict near)
+{
+    const box_ray *b = &r->box;
+    const float *restrict nx = boxes_planes(n, b->near[0]), *restrict ny = boxes_planes(n, b->near[1]),
+                          *restrict nz = boxes_planes(n, b->near[2]);
+    const float *restrict fx = boxes_planes(n, b->far[0]), *restrict fy = boxes_planes(n, b->far[1]),
+                          *restrict fz = boxes_planes(n, b->far[2]);
+    _Alignas(32) float far[BOXES_WIDE];
+    int8x32 used;
+    memcpy(&used, n->used, sizeof used);
+    /* VECTORISE */
+    for (int i = 0; i < BOXES_WIDE; i++) {
+        const float x = MULTIPLY_ADD(nx[i], b->inverse[0], b->near_offset[0]),
+                    y = MULTIPLY_ADD(ny[i], b->inverse[1], b->near_offset[1]),
+                    z = MULTIPLY_ADD(nz[i], b->inverse[2], b->near_offset[2]);
+        const float u = MULTIPLY_ADD(fx[i], b->inverse[0], b->far_offset[0]),
+                    v = MULTIPLY_ADD(fy[i], b->inverse[1], b->far_offset[1]),
+                    w = MULTIPLY_ADD(fz[i], b->inverse[2], b->far_offset[2]);
+        near[i] = boxes_max(boxes_max(x, y), boxes_max(z, b->t_min));
+        far[i] = boxes_min(boxes_min(u, v), boxes_min(w, r->t_max));
+    }
+    return lanes_of8((floats_at(near) <= floats_at(far)) & used);
+}
+
 /* Called with each item whose box the ray may enter before t_max. Returns t_max or a smaller bound; a negative one ends
  * the search. */
 typedef double boxes_visit(void *context, int item, double t_max);
@@ -84,35 +140,6 @@ typedef double boxes_visit(void *context, int item, double t_max);
 /* Prefetches the data of an item that will probably be visited soon: in large hierarchies the time goes into waiting
  * for memory. */
 typedef void boxes_fetch(void *context, int item);
-
-/* The children of a node, as bits, that the ray may enter before its t_max; near: the t at which it enters each. */
-ALWAYS_INLINE unsigned boxes_entered(const boxes_node *n, const boxes_ray *r, float near[BOXES_WIDE])
-{
-    int32_t entered[BOXES_WIDE];
-    const float *in[3], *out[3];
-    float offset_in[3], offset_out[3];
-    for (int axis = 0; axis < 3; axis++) {
-        const bool down = r->inverse[axis] < 0.0f;
-        in[axis] = down ? n->high[axis] : n->low[axis];
-        out[axis] = down ? n->low[axis] : n->high[axis];
-        offset_in[axis] = down ? r->origin[axis] - r->margin : r->origin[axis] + r->margin;
-        offset_out[axis] = down ? r->origin[axis] + r->margin : r->origin[axis] - r->margin;
-    }
-    /* VECTORISE */
-    for (int i = 0; i < BOXES_WIDE; i++) {
-        const float x = (in[0][i] - offset_in[0]) * r->inverse[0], y = (in[1][i] - offset_in[1]) * r->inverse[1],
-                    z = (in[2][i] - offset_in[2]) * r->inverse[2];
-        const float u = (out[0][i] - offset_out[0]) * r->inverse[0], v = (out[1][i] - offset_out[1]) * r->inverse[1],
-                    w = (out[2][i] - offset_out[2]) * r->inverse[2];
-        const float first = boxes_less(boxes_max(boxes_max(x, y), z)), last = boxes_more(boxes_min(boxes_min(u, v), w));
-        near[i] = boxes_max(first, r->t_min);
-        entered[i] = -(int32_t)(near[i] <= boxes_min(last, r->t_max));
-    }
-    unsigned set = 0;
-    for (int i = 0; i < BOXES_WIDE; i++)
-        set |= (unsigned)(entered[i] & 1) << i;
-    return set & ((1u << n->count) - 1);
-}
 
 /* A child on the stack, and the t at which the ray enters it. */
 typedef struct boxes_pending {
@@ -128,11 +155,11 @@ ALWAYS_INLINE void boxes_fetch_node(const solid_boxes *b, int32_t child)
 
 /* Pushes a node's entered children, the nearest last; returns the new size. */
 ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_pending *stack, int size, const boxes_node *n,
-                             unsigned entered, const float *near, boxes_fetch *fetch, void *context)
+                             uint64_t entered, const float *near, boxes_fetch *fetch, void *context)
 {
     const int first = size;
-    for (; entered; entered &= entered - 1) {
-        const int child = __builtin_ctz(entered);
+    for (; entered; entered = LANES_LESS_FIRST(entered)) {
+        const unsigned child = lane_first(entered);
         int at = size++;
         for (; at > first && stack[at - 1].near < near[child]; at--)
             stack[at] = stack[at - 1];
@@ -150,12 +177,8 @@ ALWAYS_INLINE void boxes_traverse(const solid_boxes *b, vec3 origin, vec3 direct
                                   boxes_visit *visit, boxes_fetch *fetch, void *context)
 {
     boxes_pending stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1];
-    float near[BOXES_WIDE];
-    boxes_ray r = {.origin = {(float)origin.x, (float)origin.y, (float)origin.z},
-                   .inverse = {boxes_inverse(direction.x), boxes_inverse(direction.y), boxes_inverse(direction.z)},
-                   .margin = boxes_margin(b->reach, origin.x, origin.y, origin.z),
-                   .t_min = boxes_less((float)t_min),
-                   .t_max = boxes_more((float)t_max)};
+    _Alignas(32) float near[BOXES_WIDE];
+    boxes_ray r = boxes_ray_start(b, origin, direction, t_min, t_max);
     int size = boxes_push(b, stack, 0, b->nodes, boxes_entered(b->nodes, &r, near), near, fetch, context);
     while (size > 0) {
         const boxes_pending next = stack[--size];
@@ -171,7 +194,72 @@ ALWAYS_INLINE void boxes_traverse(const solid_boxes *b, vec3 origin, vec3 direct
             return;
         if (bound < t_max) {
             t_max = bound;
-            r.t_max = boxes_more((float)t_max);
+            r.t_max = float_above(t_max);
         }
+    }
+}
+
+/* --- the rays of a batch ---
+ *
+ * They walk the tree once: each visited node is tested with all rays that enter its box (Barringer and Akenine-Moller,
+ * "Dynamic ray stream traversal", ACM TOG 33(4), 2014). So a node is read once for them, and while its other rays are
+ * tested, its children arrive from memory. */
+
+/* Called with an item and the numbers of the rays that may enter its box. */
+typedef void boxes_visit_rays(void *context, int item, const uint16_t *rays, int count);
+
+/* A child on the stack, and its rays: `count` numbers in the list, from `first` on. */
+typedef struct boxes_listed {
+    int32_t child;
+    int first, count;
+} boxes_listed;
+
+enum { BOXES_LIST = (BOXES_DEPTH_MAX * BOXES_WIDE + 1) * BATCH };
+
+/* Lists the unsettled rays of `next` by the child that they enter, and pushes these children; returns the new size. */
+ALWAYS_INLINE int boxes_push_listed(const solid_boxes *b, const boxes_ray *rays, const int64_t *settled,
+                                    boxes_listed next, uint16_t *list, boxes_listed *stack, int size,
+                                    boxes_fetch *fetch, void *context)
+{
+    const boxes_node *n = &b->nodes[next.child];
+    const int room = next.first + next.count;
+    int counts[BOXES_WIDE] = {0};
+    for (int k = next.first; k < room; k++) {
+        const uint16_t ray = list[k];
+        _Alignas(32) float near[BOXES_WIDE];
+        if (settled[ray])
+            continue;
+        for (uint64_t set = boxes_entered(n, &rays[ray], near); set; set = LANES_LESS_FIRST(set)) {
+            const unsigned child = lane_first(set);
+            list[room + (int)child * next.count + counts[child]++] = ray;
+        }
+    }
+    for (int i = 0; i < BOXES_WIDE; i++) {
+        if (counts[i] == 0)
+            continue;
+        stack[size++] = (boxes_listed){n->child[i], room + i * next.count, counts[i]};
+        if (n->child[i] >= 0)
+            boxes_fetch_node(b, n->child[i]);
+        else
+            fetch(context, ~n->child[i]);
+    }
+    return size;
+}
+
+/* Visits the items whose boxes the rays may enter, in any order. A ray may be settled by any visit; it is then not
+ * reported again. */
+ALWAYS_INLINE void boxes_traverse_rays(const solid_boxes *b, const boxes_ray *rays, int count, const int64_t *settled,
+                                       boxes_visit_rays *visit, boxes_fetch *fetch, void *context)
+{
+    uint16_t list[BOXES_LIST];
+    boxes_listed stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1] = {{0, 0, count}};
+    for (int i = 0; i < count; i++)
+        list[i] = (uint16_t)i;
+    for (int size = 1; size > 0;) {
+        const boxes_listed next = stack[--size];
+        if (next.child >= 0)
+            size = boxes_push_listed(b, rays, settled, next, list, stack, size, fetch, context);
+        else
+            visit(context, ~next.child, list + next.first, next.count);
     }
 }

@@ -124,8 +124,9 @@ static bool can_be_in_tree(const region_source *source)
     return !rule->unbounded && !rule->triangles;
 }
 
-/* From this number of primitives on, a hierarchy over the bounded ones was measured to be faster. */
-enum { MANY = 24 };
+/* From this number of primitives on, a hierarchy over the bounded ones was measured to be faster; with meshes there are
+ * no views (solid_view_kernel.c), and a search for every ray pays later. */
+enum { MANY = 10, MANY_WITH_MESHES = 24 };
 
 /* The primitives of a scene, counted by how rays find them. */
 typedef struct primitive_counts {
@@ -133,6 +134,7 @@ typedef struct primitive_counts {
     size_t all, findable; /* findable: those that a tree can find */
     size_t normals;       /* of all their sides */
     size_t surfaces;      /* of liquids with a meniscus */
+    bool meshes;
 } primitive_counts;
 
 static primitive_counts count_primitives(const region_source *sources, int count)
@@ -146,14 +148,16 @@ static primitive_counts count_primitives(const region_source *sources, int count
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
         n.normals += copies * (size_t)sources[i].shape->sides;
         n.surfaces += has_meniscus(sources[i].shape) ? copies : 0;
+        n.meshes |= shape_of(sources[i].shape)->triangles;
     }
     return n;
 }
 
 static bool uses_tree(tree_use use, const primitive_counts *n)
 {
+    const size_t many = n->meshes ? MANY_WITH_MESHES : MANY;
     return n->findable > 0 &&
-           (n->all > PRIMITIVES_MAX || use == TREE_ALWAYS || (use == TREE_IF_MANY && n->findable >= MANY));
+           (n->all > PRIMITIVES_MAX || use == TREE_ALWAYS || (use == TREE_IF_MANY && n->findable >= many));
 }
 
 /* Adds the regions: first the direct ones, then those for the tree. */

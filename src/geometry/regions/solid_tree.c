@@ -136,11 +136,12 @@ static int build_node(boxes_build *b, range all)
     const int number = b->out->node_count++;
     range ranges[BOXES_WIDE] = {all};
     const int count = split(b, ranges);
-    b->out->nodes[number] = (boxes_node){.count = count};
+    b->out->nodes[number] = (boxes_node){.used = {0}};
     for (int k = 0; k < count; k++) {
         boxes_node *n = &b->out->nodes[number];
         const bounds3 box = around(b, ranges[k].first, ranges[k].count);
         set_box(n, k, &box);
+        n->used[k] = -1;
         n->child[k] = ranges[k].count == 1 ? ~b->order[ranges[k].first] : build_node(b, ranges[k]);
     }
     return number;

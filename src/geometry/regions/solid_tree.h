@@ -10,14 +10,14 @@
 
 /* The tree's hierarchy: axis-aligned boxes, eight to a node, by median splits along the longest axis. Boxes are single
  * precision, rounded outwards. Any number of threads may use it at once. */
-enum { BOXES_WIDE = 8, BOXES_DEPTH_MAX = 24 };
+enum { BOXES_WIDE = 8, BOXES_DEPTH_MAX = 7 };
+_Static_assert(SET_PRIMITIVES_MAX <= 1 << 3 * BOXES_DEPTH_MAX, "a node has an eighth of the items of the one above");
 
-/* Boxes by axis and child. A child is a node's number, or ~i for item i. */
+/* Boxes by axis and child. A child is a node's number, or ~i for item i; used: -1, or 0 for no child. */
 typedef struct boxes_node {
     float low[3][BOXES_WIDE] __attribute__((aligned(64)));
     float high[3][BOXES_WIDE];
-    int32_t child[BOXES_WIDE];
-    int32_t count, unused[7];
+    int32_t child[BOXES_WIDE], used[BOXES_WIDE];
 } boxes_node;
 
 typedef struct solid_boxes {

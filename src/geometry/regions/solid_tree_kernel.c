@@ -351,38 +351,45 @@ typedef struct shadow_search {
     const scene_geometry *g;
     const ray_batch *rays;
     ray_scratch *s;
-    int ray, solid_shadows;
+    int solid_shadows;
 } shadow_search;
 
-static void start_intervals(const shadow_search *w, int p, interval *found)
+static void start_intervals(const shadow_search *w, int p, int i, bool inside, interval *found)
 {
     const primitive *one = &w->g->primitives[p];
-    one->rule->KERNEL_ISA->one(one, w->rays, w->ray, contains_start_of(w->g, w->rays, w->ray, w->s, p), w->s, found);
+    one->rule->KERNEL_ISA->one(one, w->rays, i, inside, w->s, found);
 }
 
-/* The quick shadow test of the range 0..1, as for the direct regions. */
-static double visit_shadow(void *context, int item, double t_max)
+/* The quick shadow test of ray i in the range 0..1, as for the direct regions. */
+static void test_shadow(const shadow_search *w, const region *b, bool doubtful, int i)
 {
-    shadow_search *w = context;
     const scene_geometry *g = w->g;
-    const int r = g->tree->solids[item].region;
-    const region *b = &g->regions[r];
-    if (!region_casts_shadow(b, w->solid_shadows))
-        return t_max;
-    const bool doubtful = !b->opaque || r < g->highest_transparent;
-    const double thin = BOUNDARY_CLOSE * (1.0 + g->primitives[b->outside].extent * w->s->low[w->ray]);
+    const double thin = BOUNDARY_CLOSE * (1.0 + g->primitives[b->outside].extent * w->s->low[i]);
     interval outer[CHORDS_MAX], hollow = {HUGE_VAL, -HUGE_VAL};
-    start_intervals(w, b->outside, outer);
+    start_intervals(w, b->outside, i, set_table_has(g->tree->sets, w->s->tree.start[i], b->outside), outer);
     if (b->hollow >= 0)
-        start_intervals(w, b->hollow, &hollow);
+        start_intervals(w, b->hollow, i, contains_start_of(g, w->rays, i, w->s, b->hollow), &hollow);
     for (int row = 0; row < g->primitives[b->outside].rows; row++) {
         const overlap o = b->hollow < 0
                               ? overlap_of_convex(outer[row].in, outer[row].out, thin)
                               : overlap_of_hollowed(outer[row].in, outer[row].out, hollow.in, hollow.out, thin);
-        w->s->blocked[w->ray] |= o.thick & ~mask_of(doubtful);
-        w->s->undecided[w->ray] |= o.any;
+        w->s->blocked[i] |= o.thick & ~mask_of(doubtful);
+        w->s->undecided[i] |= o.any;
     }
-    return w->s->blocked[w->ray] ? -1.0 : t_max;
+}
+
+static void visit_shadows(void *context, int item, const uint16_t *rays, int count)
+{
+    const shadow_search *w = context;
+    const scene_geometry *g = w->g;
+    const int r = g->tree->solids[item].region;
+    const region *b = &g->regions[r];
+    const bool doubtful = !b->opaque || r < g->highest_transparent;
+    if (!region_casts_shadow(b, w->solid_shadows))
+        return;
+    for (int k = 0; k < count; k++)
+        if (!w->s->blocked[rays[k]])
+            test_shadow(w, b, doubtful, rays[k]);
 }
 
 static void fetch_shadow(void *context, int item)
@@ -393,11 +400,10 @@ static void fetch_shadow(void *context, int item)
 
 void KERNEL(tree_shadows)(const scene_geometry *g, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
-    for (int i = 0; i < rays->count; i++) {
-        if (s->blocked[i])
-            continue;
-        shadow_search w = {g, rays, s, i, solid_shadows};
-        boxes_traverse(&g->tree->boxes, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                       vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), 0.0, 1.0, visit_shadow, fetch_shadow, &w);
-    }
+    boxes_ray starts[BATCH];
+    shadow_search w = {g, rays, s, solid_shadows};
+    for (int i = 0; i < rays->count; i++)
+        starts[i] = boxes_ray_start(&g->tree->boxes, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                                    vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), 0.0, 1.0);
+    boxes_traverse_rays(&g->tree->boxes, starts, rays->count, s->blocked, visit_shadows, fetch_shadow, &w);
 }

@@ -63,8 +63,8 @@ static unsigned entered_by_some(const boxes_node *n, const batch_bounds *b)
         }
     }
     unsigned set = 0;
-    for (int i = 0; i < n->count; i++)
-        set |= (unsigned)(near[i] <= far[i]) << i;
+    for (int i = 0; i < BOXES_WIDE; i++)
+        set |= (unsigned)((near[i] <= far[i]) & n->used[i]) << i;
     return set;
 }
 
@@ -102,11 +102,13 @@ static bool has_region(const view_list *l, int r)
     return false;
 }
 
-static bool list_entered(const scene_geometry *g, const batch_bounds *b, view_list *l)
+/* The items of the tree that the batch may enter, or one more than fit into a view. Reads no other data of theirs, for
+ * which a large scene would wait, before it is known that they are few. */
+static int find_entered(const scene_geometry *g, const batch_bounds *b, int items[VIEW_PRIMITIVES_MAX])
 {
     const solid_boxes *boxes = &g->tree->boxes;
     int32_t stack[BOXES_DEPTH_MAX * BOXES_WIDE];
-    int size = 0;
+    int size = 0, count = 0;
     stack[size++] = 0;
     while (size > 0) {
         const boxes_node *n = &boxes->nodes[stack[--size]];
@@ -115,13 +117,27 @@ static bool list_entered(const scene_geometry *g, const batch_bounds *b, view_li
             if (child >= 0) {
                 stack[size++] = child;
                 boxes_fetch_node(boxes, child);
+            } else if (count == VIEW_PRIMITIVES_MAX) {
+                return count + 1;
             } else {
-                solid_tree_fetch(g->tree, ~child);
-                if (!list_region(g, g->tree->solids[~child].region, l))
-                    return false;
+                items[count++] = ~child;
             }
         }
     }
+    return count;
+}
+
+static bool list_entered(const scene_geometry *g, const batch_bounds *b, view_list *l)
+{
+    int items[VIEW_PRIMITIVES_MAX];
+    const int count = find_entered(g, b, items);
+    if (l->primitives + count > VIEW_PRIMITIVES_MAX)
+        return false;
+    for (int k = 0; k < count; k++)
+        solid_tree_fetch(g->tree, items[k]);
+    for (int k = 0; k < count; k++)
+        if (!list_region(g, g->tree->solids[items[k]].region, l))
+            return false;
     return true;
 }
 
