@@ -86,11 +86,12 @@ typedef struct range {
     int first, count;
 } range;
 
-/* The number of items below a full child of a node over `items` items. */
+/* The number of items below a full child of a node over `items` items. A few items more than eight full children have
+ * are shared among eight: that was measured to be faster than another level above them. */
 static int full_child(int items)
 {
-    int full = 1;
-    while (items / full > BOXES_WIDE || full * BOXES_WIDE < items)
+    int full = items > BOXES_WIDE ? BOXES_WIDE : 1;
+    while (2 * items > 3 * full * BOXES_WIDE)
         full *= BOXES_WIDE;
     return full;
 }
