@@ -9,18 +9,29 @@
 
 #define INSTANCE_SET KERNEL(instance_kernels)
 
-static instance_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch *s)
+/* Member by member, for queries in arrays: a struct that is made in registers and then copied in wide pieces waits for
+ * its own stores. */
+ALWAYS_INLINE void set_ray(const ray_batch *rays, int k, const ray_scratch *s, instance_ray *ray)
 {
     const int i = s->ray[k];
     const mesh_scratch *m = s->meshes;
-    return (instance_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                          .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
-                          .t_min = m->from[k],
-                          .t_max = HUGE_VAL,
-                          .start = m->last[k],
-                          .before = 0,
-                          .inside = s->inside[k],
-                          .counts = m->counts};
+    ray->origin.x = rays->ox[i], ray->origin.y = rays->oy[i], ray->origin.z = rays->oz[i];
+    ray->direction.x = rays->dx[i], ray->direction.y = rays->dy[i], ray->direction.z = rays->dz[i];
+    ray->t_min = m->from[k];
+    ray->t_max = HUGE_VAL;
+    ray->tie = ray->tie_by_extent = 0.0;
+    ray->start = m->last[k];
+    ray->before = 0;
+    ray->inside = s->inside[k];
+    ray->wanted = 0;
+    ray->counts = m->counts;
+}
+
+static instance_ray ray_of_column(const ray_batch *rays, int k, const ray_scratch *s)
+{
+    instance_ray ray;
+    set_ray(rays, k, s, &ray);
+    return ray;
 }
 
 /* A front and a back of one mesh within this fraction of the distance and of the mesh's own extent coincide: well above
@@ -66,7 +77,7 @@ void KERNEL(mesh_changes)(const scene_geometry *g, const ray_batch *rays, int n,
     const int queried = columns_to_query(f, rays, n, column);
     for (int q = 0; q < queried; q++) {
         const int k = column[q];
-        queries[q] = ray_of_column(rays, k, s);
+        set_ray(rays, k, s, &queries[q]);
         queries[q].t_max = c->t[k] + close_to(s, k, c->t[k]);
         queries[q].before = c->before[k];
         queries[q].wanted = f->primitives;
