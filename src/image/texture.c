@@ -1,6 +1,7 @@
 /* Textures: memory, mipmap, creation, reading, ownership, hash, packing. */
 #include "image/texture_parts.h"
 
+#include "base/array.h"
 #include "base/budget.h"
 #include "base/cancel.h"
 #include "base/hash.h"
@@ -25,7 +26,7 @@ static bool allocate_levels(texture *t, int width, int height)
         height = height > 1 ? height / 2 : 1;
     } while (t->filter == TEXTURE_TRILINEAR);
     t->block_bytes = (count * sizeof(texel) + 63) / 64 * 64;
-    t->block = aligned_alloc(64, t->block_bytes);
+    t->block = large_pages(aligned_alloc(64, t->block_bytes), t->block_bytes);
     for (int level = 0; t->block && level < t->levels; level++)
         t->level[level].texels = t->block + start[level];
     return t->block;
