@@ -245,6 +245,16 @@ static void nearest_one(const instance_set *f, const instance_ray *ray, instance
     query(&q);
 }
 
+/* Searches again beyond a crossing at the ray's start. */
+static void pass_start(const instance_set *f, const instance_ray *ray, instance_hit *hit)
+{
+    instance_ray later = *ray;
+    for (double bound; hit->face != FACE_NONE && (bound = at_start(f, ray, hit)) > later.t_min;) {
+        later.t_min = bound;
+        nearest_one(f, &later, hit);
+    }
+}
+
 static void nearest(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits)
 {
     for (int i = 0; i < count; i++)
@@ -254,11 +264,8 @@ static void nearest(const instance_set *f, const instance_ray *rays, int count, 
     for (int i = 0; i < count; i++) {
         if (f->instance_count > FEW_COPIES)
             nearest_one(f, &rays[i], &hits[i]);
-        instance_ray later = rays[i];
-        for (double bound; hits[i].face != FACE_NONE && (bound = at_start(f, &rays[i], &hits[i])) > later.t_min;) {
-            later.t_min = bound;
-            nearest_one(f, &later, &hits[i]);
-        }
+        if (hits[i].face != FACE_NONE && at_start(f, &rays[i], &hits[i]) > rays[i].t_min)
+            pass_start(f, &rays[i], &hits[i]);
     }
 }
 

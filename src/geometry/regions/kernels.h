@@ -180,6 +180,8 @@ void KERNEL(mesh_each_near)(const scene_geometry *g, const ray_batch *rays, int 
 instance_hit KERNEL(mesh_hit_between)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
                                       int bit, uint64_t before, double low, double high);
 
-/* Marks the shadow rays (except settled ones) that meshes of a set block. */
-void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, query_counts *counts,
-                          int64_t *marked, const int64_t *settled);
+/* Marks the shadow rays (except settled ones) that meshes of a set block between 0 and 1. certain: only those;
+ * otherwise possibly more, whose crossings the caller searches anyway. A ray that starts inside a closed mesh is
+ * blocked at its start. */
+void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, bool certain,
+                          query_counts *counts, int64_t *marked, const int64_t *settled);

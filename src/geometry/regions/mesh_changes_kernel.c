@@ -208,11 +208,11 @@ instance_hit KERNEL(mesh_hit_between)(const scene_geometry *g, const ray_batch *
     return hit;
 }
 
-/* Marks rays that a mesh of the set blocks between 0 and 1. A ray that starts inside a closed mesh is blocked at its
- * start. */
-void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, query_counts *counts,
-                          int64_t *marked, const int64_t *settled)
+void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64_t wanted, bool certain,
+                          query_counts *counts, int64_t *marked, const int64_t *settled)
 {
+    /* most rays that enter the box of a single mesh hit it, and would be searched twice */
+    const bool by_box = !certain && g->meshes->instance_count == 1;
     instance_ray queries[BATCH];
     bool found[BATCH];
     int ray[BATCH], count = 0;
@@ -227,6 +227,10 @@ void KERNEL(mesh_shadows)(const scene_geometry *g, const ray_batch *rays, uint64
         }
         if (misses[i])
             continue;
+        if (by_box) {
+            marked[i] = -1;
+            continue;
+        }
         queries[count] = (instance_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
                                         .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
                                         .t_min = 0.0,

@@ -535,9 +535,9 @@ static void quick_shadow_test(const scene_geometry *g, const ray_batch *rays, in
     if (g->tree)
         KERNEL(tree_shadows)(g, rays, solid_shadows, s);
     if (sure)
-        KERNEL(mesh_shadows)(g, rays, sure, s->meshes->counts, s->blocked, s->blocked);
+        KERNEL(mesh_shadows)(g, rays, sure, true, s->meshes->counts, s->blocked, s->blocked);
     if (unsure)
-        KERNEL(mesh_shadows)(g, rays, unsure, s->meshes->counts, s->undecided, s->blocked);
+        KERNEL(mesh_shadows)(g, rays, unsure, false, s->meshes->counts, s->undecided, s->blocked);
 }
 
 /* The material slot of the mesh face that column k crosses; 0 if the surface is another region's. */
