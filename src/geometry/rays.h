@@ -76,6 +76,7 @@ enum { SEGMENTS_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
  * the scratch, whose layout was measured to be the fastest for the cache. */
 typedef struct medium_segments {
     int count;
+    bool all; /* set by the caller: segments are also recorded in media that do not attenuate */
     void (*full)(void *context);
     void *context;
     double passed[ROW], unit[ROW]; /* the t up to which a column has been searched; the length of a step of t = 1 */

@@ -311,6 +311,8 @@ static int outer_region(const scene_geometry *g, int64_t r)
 static void record_segment(const scene_geometry *g, int k, double end, ray_scratch *s, const hit_batch *hits)
 {
     medium_segments *w = s->segments;
+    if (!w->all && !g->regions[hits->before[k]].attenuates)
+        return;
     const double length = (lesser(hits->t[k], end) - w->passed[k]) * w->unit[k];
     if (w->count == SEGMENTS_MAX)
         w->full(w->context);

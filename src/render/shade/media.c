@@ -264,6 +264,7 @@ static void add_depths(tracer *t)
 {
     const plan *p = t->target.frame_plan;
     const int64_t *sample_keys = t->media->sample_keys;
+    t->media->dims |= p->scatter || p->sheets;
     if (p->scatter && !t->media->flights.flies)
         add_scattering(t);
     for (int k = 0; p->sheets && k < t->batch.scratch.segments->count; k++)
@@ -272,6 +273,7 @@ static void add_depths(tracer *t)
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
         if (!p->geometry->regions[s->priority_index].attenuates)
             continue;
+        t->media->dims = true;
         const vec3 a = absorption_coefficients(p, s->priority_index, sample_keys[s->ray]);
         t->media->transmittance[0][s->ray] += a.x * s->length;
         t->media->transmittance[1][s->ray] += a.y * s->length;
@@ -322,8 +324,12 @@ void absorption_end(tracer *t)
 
 void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
 {
+    const plan *p = t->target.frame_plan;
     t->media->sample_keys = q->sample_key + first;
     t->media->to_lamps = q == &t->queues.shadows;
+    t->media->dims = false;
+    /* distances along a ray are sums of its segments where free flights, sheets, and lights with a size end it */
+    t->media->segments.all = p->scatter || p->sheets || integrator_traits_of(&p->render)->by_chance;
     t->media->flights.flies = t->media->flights.flying = false;
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
@@ -333,11 +339,17 @@ void absorption_announce(tracer *t, const ray_queue *q, int first, int count)
     sheets_announce(t, q, first, count);
 }
 
+/* A depth of 0 becomes a transmittance of exactly 1. */
 static void apply_transmittances(tracer *t, int count)
 {
     add_depths(t);
-    for (int c = 0; c < 3; c++)
-        t->shade->absorb(t->media->transmittance[c], count);
+    for (int c = 0; c < 3; c++) {
+        if (t->media->dims)
+            t->shade->absorb(t->media->transmittance[c], count);
+        else
+            for (int i = 0; i < count; i++)
+                t->media->transmittance[c][i] = 1.0;
+    }
     if (t->target.frame_plan->sheets)
         sheets_leave(t, count, t->media->transmittance);
 }
@@ -363,7 +375,7 @@ void absorption_exempt_suns(tracer *t)
 void absorption_dim(tracer *t, ray_queue *q, int first, int count)
 {
     apply_transmittances(t, count);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; t->media->dims && i < count; i++) {
         q->wr[first + i] *= t->media->transmittance[0][i];
         q->wg[first + i] *= t->media->transmittance[1][i];
         q->wb[first + i] *= t->media->transmittance[2][i];

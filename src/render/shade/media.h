@@ -46,6 +46,7 @@ typedef struct media_work {
     medium_segments segments;
     const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
     bool to_lamps;                /* the batch consists of shadow rays */
+    bool dims;                    /* some of its rays pass through a medium that attenuates */
     double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
     sheet_work sheets;
     flight_work flights;
