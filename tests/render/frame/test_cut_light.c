@@ -34,7 +34,7 @@ static render_result *with_map(const scene *s)
 
 static quantity_value value_of(const char *name, const scene *s, const render_result *r)
 {
-    const job_account a = {.of = s, .result = (render_result *)(uintptr_t)r, .level = isa_best(), .whole = true};
+    const job_account a = {.of = s, .result = (render_result *)(uintptr_t)r, .level = isa_best(), .complete = true};
     return frame_quantity(name)->read(&a, -1);
 }
 
