@@ -202,7 +202,7 @@ static void print_summary(const job_account *f, const outputs *files)
     char depth[DEPTH_TEXT_MAX];
     printf("%s%lldx%lld pixels, depth %s: %llu rays in %.3f s (%.1f million per second), film %016llx",
            f->complete ? "" : "a part of ", (long long)s->render.width, (long long)s->render.height,
-           depth_text(&s->render, depth), (unsigned long long)rays, wall_s,
+           render_depth_text(&s->render, depth), (unsigned long long)rays, wall_s,
            wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0, (unsigned long long)job_account_hash(f));
     if (f->result->variance)
         printf(", rms noise %.4f", render_noise_rms(f->result));

@@ -183,7 +183,7 @@ static void write_account(const page_content *page, const page_rays *rays, FILE 
 {
     char depth[DEPTH_TEXT_MAX];
     fprintf(out, "<p>%d × %d pixels, depth %s, film %016" PRIx64 ", Cuvette %s.</p>\n", page->rows.width,
-            page->rows.height, depth_text(&page->s->render, depth), page->film_hash, CUVETTE_VERSION);
+            page->rows.height, render_depth_text(&page->s->render, depth), page->film_hash, CUVETTE_VERSION);
     if (rays->beams)
         fprintf(out, "<h2>Rays of the beams</h2>\n<p>The %zu strongest of %zu segments.", rays->count, rays->traced);
     else

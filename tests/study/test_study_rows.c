@@ -51,9 +51,7 @@ static char *write_row(const study *s, const scene *setting, bool workers)
                                         .cpu_s = 0.875,
                                         .peak_rss_bytes = 4096,
                                         .voluntary_switches = 1,
-                                        .involuntary_switches = 0,
-                                        .machine_busy_s = NAN,
-                                        .machine_units = 2},
+                                        .involuntary_switches = 0},
                               .noise = {NAN, 0.125, 2e9, 0.25},
                               .hardware = {-1, -1, 5, 0}};
     study_row row = {.s = s,

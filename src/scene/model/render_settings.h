@@ -89,7 +89,7 @@ static inline bool traces_ray_trees(const render_settings *r)
 enum { DEPTH_TEXT_MAX = 24 };
 
 /* The depth as users write it, in text; needs no memory. */
-static inline const char *depth_text(const render_settings *r, char text[DEPTH_TEXT_MAX])
+static inline const char *render_depth_text(const render_settings *r, char text[DEPTH_TEXT_MAX])
 {
     if (r->depth == DEPTH_UNLIMITED)
         return "unlimited";
