@@ -105,7 +105,7 @@ mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(foreach e,html css js svg,src/web/page/*.$(e) src/web/page/*/*.$(e))))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c number.c below.c float_environment.c \
-  array.c os_confine.c os_process.c thread_team.c worker_pool.c)
+  array.c text.c os_confine.c os_process.c thread_team.c worker_pool.c)
 objects_of = $(1:src/%.c=$(build)/obj/%.o)
 include mk/arch.mk
 library_objects := $(call objects_of,$(library)) $(kernel_objects)
@@ -153,8 +153,8 @@ mpi-tools: | $(call requested,setup-mpi)
 	@pkg-config --exists $(MPI_PACKAGE) || \
 	  { echo 'mpi: OpenMPI ($(MPI_PACKAGE)) is not installed; run: make setup-mpi' >&2; exit 1; }
 
-# The mesh importer, the only program linked to assimp. Built without sanitizers, which need more address space than the
-# limit that it sets itself.
+# The mesh importer, the only program linked to assimp, which reads glTF. Built without sanitizers, which need more
+# address space than the limit that it sets itself.
 plain_cflags = $(filter-out -fsanitize% -fno-sanitize%,$(all_cflags))
 $(build)/cuvette-import: $(importer_objects)
 	$(call say,link $@)

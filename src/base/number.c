@@ -59,6 +59,90 @@ bool number_parse_real(const char *text, double *value)
     return true;
 }
 
+/* Moves *at past digits, and appends them to *digits while they fit. Returns how many there are; *left: how many of
+ * them did not fit. */
+static int scan_digits(const char **at, uint64_t *digits, int *left)
+{
+    const char *c = *at;
+    uint64_t sum = *digits;
+    for (; *c >= '0' && *c <= '9'; c++)
+        if (sum < UINT64_C(1000000000000000000))
+            sum = 10 * sum + (uint64_t)(*c - '0');
+        else
+            ++*left;
+    const int count = (int)(c - *at);
+    *at = c;
+    *digits = sum;
+    return count;
+}
+
+/* The error of the product a * b, exactly (Veltkamp's division of factors, Dekker, "A floating-point technique for
+ * extending the available precision", 1971). */
+static double product_error(double a, double b, double product)
+{
+    const double c = 134217729.0 * a, d = 134217729.0 * b, ah = c - (c - a), bh = d - (d - b), al = a - ah, bl = b - bh;
+    return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+}
+
+/* digits times or divided by an exact power of ten, as a sum of two doubles with an error below 2^-100 of it. False if
+ * that does not decide to which double the number is rounded. */
+static bool scale(uint64_t digits, double power, bool divide, double *number)
+{
+    const double high = (double)digits, low = (double)(int64_t)(digits - (uint64_t)high);
+    double first, second;
+    if (divide) {
+        first = high / power;
+        const double product = first * power;
+        second = ((high - product) - product_error(first, power, product) + low) / power;
+    } else {
+        first = high * power;
+        second = product_error(high, power, first) + low * power;
+    }
+    const double margin = 0x1p-100 * first, above = first + (second + margin), below = first + (second - margin);
+    *number = above;
+    return !(below < above);
+}
+
+/* Up to 2^53, and with a power of ten up to 10^22, both factors are exact doubles, and one operation rounds once
+ * (Clinger, "How to read floating point numbers accurately", 1990). */
+bool number_scan(const char **at, double *value)
+{
+    static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    const char *c = skip_sign(*at);
+    uint64_t digits = 0;
+    int left = 0, after = 0, exponent = 0;
+    int count = scan_digits(&c, &digits, &left);
+    if (*c == '.') {
+        c++;
+        after = scan_digits(&c, &digits, &left);
+        count += after;
+    }
+    if (count == 0)
+        return false;
+    if (*c == 'e' || *c == 'E') {
+        const char *first = skip_sign(c + 1), *end = first;
+        for (; *end >= '0' && *end <= '9'; end++)
+            exponent = exponent < 100000 ? 10 * exponent + (*end - '0') : exponent;
+        if (end == first)
+            return false;
+        exponent = c[1] == '-' ? -exponent : exponent;
+        c = end;
+    }
+    exponent -= after;
+    const bool in_range = left == 0 && exponent >= -22 && exponent <= 22, exact = digits <= UINT64_C(1) << 53;
+    double number = (double)digits;
+    if (in_range && exact)
+        number = exponent < 0 ? number / powers[-exponent] : number * powers[exponent];
+    else if (digits != 0 && !(in_range && scale(digits, powers[abs(exponent)], exponent < 0, &number)))
+        number = fabs(strtod_l(*at, NULL, c_locale()));
+    if (!isfinite(number))
+        return false;
+    *value = **at == '-' ? -number : number;
+    *at = c;
+    return true;
+}
+
 bool number_parse_int(const char *text, int64_t *value)
 {
     if (!text)

@@ -11,6 +11,11 @@ enum { NUMBER_TEXT_MAX = 32 };
  * decimal point whatever LC_NUMERIC is. False if it is not a number or overflows. */
 bool number_parse_real(const char *text, double *value);
 
+/* Reads a decimal number at *at (sign, digits with a point among them or around them, exponent), rounds it to the
+ * nearest double, and moves *at past it. The text may go on with anything, but must end in a character that is not
+ * part of a number. False, with *at unchanged: no number is there, or it is not finite. */
+bool number_scan(const char **at, double *value);
+
 /* Parses a complete text as a decimal integer; false if it is not one or does not fit. "4.0" is not an integer. */
 bool number_parse_int(const char *text, int64_t *value);
 

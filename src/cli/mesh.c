@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "report/json.h"
 #include "report/mesh_writers.h"
 #include "scene/model/edit/edit.h"
@@ -147,6 +148,8 @@ status command_mesh(int argc, char **argv, diagnostic *why)
     THEN(result, check_request(&request, why));
     THEN(result, choose_format(&request, why));
     THEN(result, load_mesh(&request, why));
+    if (result == STATUS_OK && *face_materials_note(request.scene->meshes[0].shading_materials))
+        terminal_note(face_materials_note(request.scene->meshes[0].shading_materials));
     THEN(result, outputs_write_text(request.output, write_to, &request, why));
     scene_destroy(request.scene);
     return result;

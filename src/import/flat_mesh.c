@@ -1,9 +1,23 @@
-/* The hash table of vertices, keyed by their bits: open addressing with linear probing, at most half full. */
+/* The mesh of a file: its vertices, joined by a hash table keyed by their bits (open addressing with linear probing, at
+ * most half full), its materials, and how it is written for the program that reads it. */
 #include "import/flat_mesh.h"
 #include "base/array.h"
 
+#include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+
+status no_memory_for(const request *req, diagnostic *why)
+{
+    if (!req->memory_mib)
+        return out_of_memory(why);
+    return diagnose_at(why, req->path, STATUS_BAD_INPUT,
+                       "use a mesh of less detail, or export the file again if it is damaged",
+                       "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
+}
+
+/* --- vertices --- */
 
 enum { NUMBERS = 8 };
 
@@ -85,26 +99,29 @@ static bool resize_arrays(joiner *j, flat_mesh *flat, size_t room)
 
 bool join_reserve(joiner *j, flat_mesh *flat, size_t count)
 {
+    if (count == 0)
+        return true;
     size_t size = 1024;
     while (size < 2 * count)
         size *= 2;
     return resize_table(j, flat, size) && resize_arrays(j, flat, count);
 }
 
-enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[NUMBERS], uint64_t hash,
-                        uint32_t *index)
+status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[NUMBERS], uint64_t hash,
+                   uint32_t *index, diagnostic *why)
 {
     if (flat->vertex_count * 2 >= j->size && !resize_table(j, flat, j->size ? j->size * 2 : 1024))
-        return JOIN_NO_MEMORY;
+        return no_memory_for(req, why);
     size_t at = find(j, flat, numbers, hash);
     if (j->table[at]) {
         *index = j->table[at] - 1;
-        return JOINED;
+        return STATUS_OK;
     }
-    if (flat->vertex_count >= limit)
-        return JOIN_TOO_MANY;
+    if (flat->vertex_count >= req->vertices)
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail", "more vertices than the limit of %llu",
+                        (unsigned long long)req->vertices);
     if (flat->vertex_count >= j->room && !resize_arrays(j, flat, j->room + j->room / 2 + 1024))
-        return JOIN_NO_MEMORY;
+        return no_memory_for(req, why);
     *index = (uint32_t)flat->vertex_count++;
     j->table[at] = *index + 1;
     flat->positions[*index] = vec3_make(numbers[0], numbers[1], numbers[2]);
@@ -114,5 +131,130 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
         flat->uvs[*index].u = numbers[6];
         flat->uvs[*index].v = numbers[7];
     }
-    return JOINED;
+    return STATUS_OK;
+}
+
+status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[NUMBERS], size_t count,
+                     uint32_t *indices, diagnostic *why)
+{
+    uint64_t hashes[JOIN_BLOCK];
+    for (size_t i = 0; i < count; i++) {
+        for (int k = 0; k < NUMBERS; k++)
+            numbers[i][k] += 0.0; /* -0 becomes 0 */
+        hashes[i] = join_hash(flat, numbers[i]);
+        join_prefetch(j, hashes[i]);
+    }
+    for (size_t i = 0; i < count; i++)
+        TRY(join_vertex(req, j, flat, numbers[i], hashes[i], &indices[i], why));
+    return STATUS_OK;
+}
+
+/* --- triangles and materials --- */
+
+void flat_release(flat_mesh *flat)
+{
+    free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->triangles), free(flat->slots);
+    for (unsigned i = 0; i < flat->material_count; i++)
+        free(flat->materials[i].name), free(flat->materials[i].texture);
+    free(flat->note);
+    *flat = (flat_mesh){0};
+}
+
+status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnostic *why)
+{
+    if (count > req->triangles)
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
+                        (unsigned long long)req->triangles);
+    if (count == 0)
+        return diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
+                        "the file has no triangles");
+    const size_t bytes = (size_t)count * sizeof *flat->triangles;
+    flat->triangles = large_pages(malloc(bytes), bytes);
+    flat->slots = malloc((size_t)count);
+    return flat->triangles && flat->slots ? STATUS_OK : no_memory_for(req, why);
+}
+
+status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
+                     const char *texture, uint8_t *slot, diagnostic *why)
+{
+    if (flat->material_count == MESH_WIRE_SLOTS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "merge equal materials", "more than %d materials are in use",
+                        (int)MESH_WIRE_SLOTS_MAX);
+    const mesh_material m = {*values, name ? strdup(name) : NULL, texture ? strdup(texture) : NULL};
+    *slot = (uint8_t)flat->material_count;
+    flat->materials[flat->material_count++] = m;
+    return (!name || m.name) && (!texture || m.texture) ? STATUS_OK : no_memory_for(req, why);
+}
+
+void flat_note(flat_mesh *flat, const char *format, ...)
+{
+    char sentence[MESH_WIRE_TEXT_MAX + 1];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(sentence, sizeof sentence, format, list);
+    va_end(list);
+    for (char *c = sentence; *c; c++) /* as in a diagnostic */
+        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+    if (flat->note && strstr(flat->note, sentence))
+        return;
+    const size_t before = flat->note ? strlen(flat->note) + 2 : 0, length = before + strlen(sentence);
+    char *all = length <= MESH_WIRE_TEXT_MAX ? malloc(length + 1) : NULL;
+    if (!all)
+        return;
+    snprintf(all, length + 1, "%s%s%s", before ? flat->note : "", before ? "; " : "", sentence);
+    free(flat->note);
+    flat->note = all;
+}
+
+/* --- the wire format --- */
+
+static size_t text_length(const char *text)
+{
+    return text ? strnlen(text, MESH_WIRE_TEXT_MAX) : 0;
+}
+
+static void write_materials(const flat_mesh *flat, FILE *to)
+{
+    for (unsigned i = 0; i < flat->material_count; i++) {
+        const mesh_material *m = &flat->materials[i];
+        mesh_wire_material record = m->values;
+        record.name_length = (uint32_t)text_length(m->name);
+        record.texture_length = (uint32_t)text_length(m->texture);
+        fwrite(&record, sizeof record, 1, to);
+        if (m->name)
+            fwrite(m->name, 1, record.name_length, to);
+        if (m->texture)
+            fwrite(m->texture, 1, record.texture_length, to);
+    }
+}
+
+status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
+{
+    const mesh_wire_header header = {
+        .magic = MESH_WIRE_MAGIC,
+        .version = MESH_WIRE_VERSION,
+        .vertex_count = flat->vertex_count,
+        .triangle_count = flat->triangle_count,
+        .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u),
+        .material_count = flat->material_count,
+        .note_length = (uint32_t)text_length(flat->note),
+    };
+    fwrite(&header, sizeof header, 1, to);
+    fwrite(flat->positions, sizeof *flat->positions, flat->vertex_count, to);
+    if (flat->with_normals)
+        fwrite(flat->normals, sizeof *flat->normals, flat->vertex_count, to);
+    if (flat->with_uvs)
+        fwrite(flat->uvs, sizeof *flat->uvs, flat->vertex_count, to);
+    fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
+    fwrite(flat->slots, 1, flat->triangle_count, to);
+    write_materials(flat, to);
+    if (flat->note)
+        fwrite(flat->note, 1, header.note_length, to);
+    fwrite(MESH_WIRE_END, 1, sizeof MESH_WIRE_END - 1, to);
+    if (fflush(to) != 0 || ferror(to)) {
+        const char *reason = strerrordesc_np(errno);
+        return diagnose_at(why, NULL, STATUS_FAILURE, "write to a pipe", "cannot write to standard output: %s",
+                           reason ? reason : "unknown error");
+    }
+    return STATUS_OK;
 }

@@ -1,22 +1,35 @@
-/* The result of cuvette-import's readers: one mesh whose equal vertices are joined. It does not need assimp, so that
- * the module for browsers can use it, too (wasm/mesh). Ownership: the caller frees the arrays. */
+/* The result of the readers of mesh files: one mesh whose equal vertices are joined, and its materials. It does not
+ * need assimp, so that the module for browsers has it, too. Ownership: flat_release frees the arrays. Errors:
+ * STATUS_BAD_INPUT with the reason, also when out of memory if the request limits it; STATUS_FAILURE if the machine is
+ * out of memory. */
 #pragma once
 
+#include "base/status.h"
 #include "base/vec3.h"
+#include "import/mesh_wire.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 typedef enum file_kind { FILE_OBJ, FILE_PLY, FILE_STL, FILE_GLTF, FILE_GLB, FILE_UNKNOWN } file_kind;
 
 typedef struct request {
     const char *path;
     file_kind kind;               /* by the file's extension */
-    uint64_t memory_mib, seconds; /* limits on this process */
+    uint64_t memory_mib, seconds; /* limits on this process; 0: none */
     uint64_t triangles, vertices; /* limits on the mesh */
     const char *root;             /* folder of all files that may be opened (base/file.h); "": no restriction */
-    enum { READER_ANY, READER_PLAIN, READER_ASSIMP } reader; /* what reads OBJ files; READER_PLAIN: obj.h */
 } request;
+
+/* STATUS_BAD_INPUT for a request with a limit of memory, because the file needs more; else STATUS_FAILURE. */
+status no_memory_for(const request *req, diagnostic *why);
+
+/* A material; name and texture may be NULL. Both are owned. */
+typedef struct mesh_material {
+    mesh_wire_material values; /* without the lengths */
+    char *name, *texture;
+} mesh_material;
 
 /* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
 typedef struct flat_mesh {
@@ -26,23 +39,44 @@ typedef struct flat_mesh {
         double u, v;
     } * uvs;
     uint32_t (*triangles)[3];
-    uint8_t *slots;
+    uint8_t *slots; /* by triangle: index of its material */
     bool with_normals, with_uvs;
-    unsigned material_count, materials[256]; /* by slot: index into the scene's materials */
+    unsigned material_count;
+    mesh_material materials[MESH_WIRE_SLOTS_MAX];
+    char *note; /* what the file names or has, and the mesh lacks; NULL: nothing */
 } flat_mesh;
 
+void flat_release(flat_mesh *flat);
+/* Makes the arrays for `count` triangles, and refuses more than the limit. */
+status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnostic *why);
+/* Adds a material for further triangles; *slot is its index. Name and texture are copied; NULL: none. */
+status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
+                     const char *texture, uint8_t *slot, diagnostic *why);
+/* Adds a sentence to the note, unless it is there already. */
+void flat_note(flat_mesh *flat, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Writes the wire format (mesh_wire.h). STATUS_FAILURE if `to` cannot be written. */
+status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why);
+
+/* --- joining vertices --- */
+
+enum { JOIN_BLOCK = 64 };
+
 /* A hash table of the vertices of a flat_mesh. The key is the bits of 8 numbers: position, normal and texture
- * coordinates. Missing ones are 0, and none may be -0. join_vertex finds the vertex with these numbers, or adds it. */
+ * coordinates. Missing ones are 0, and none may be -0. The owner frees the table. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;
     size_t room;
 } joiner;
-enum joined { JOINED, JOIN_NO_MEMORY, JOIN_TOO_MANY };
+
+/* Makes room for `count` vertices; false: out of memory. */
+bool join_reserve(joiner *j, flat_mesh *flat, size_t count);
 uint64_t join_hash(const flat_mesh *flat, const double numbers[8]);
 /* Starts to load what join_vertex will read: tables of large meshes exceed the caches. */
 void join_prefetch(const joiner *j, uint64_t hash);
-enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[8], uint64_t hash,
-                        uint32_t *index);
-/* Makes room for `count` vertices; false: out of memory. */
-bool join_reserve(joiner *j, flat_mesh *flat, size_t count);
+/* Finds the vertex with these numbers, or adds it. */
+status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[8], uint64_t hash,
+                   uint32_t *index, diagnostic *why);
+/* The same for up to JOIN_BLOCK vertices, whose -0 become 0. */
+status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[8], size_t count,
+                     uint32_t *indices, diagnostic *why);

@@ -6,24 +6,11 @@
 #include "base/number.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"
-#include "import/obj.h"
 #include <argp.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
-
-static file_kind kind_of(const char *path)
-{
-    static const char *const endings[] = {
-        [FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl", [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
-    const char *ending = strrchr(path, '.');
-    for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++)
-        if (strcasecmp(ending, endings[kind]) == 0)
-            return (file_kind)kind;
-    return FILE_UNKNOWN;
-}
 
 static error_t parse_option(int key, char *value, struct argp_state *state)
 {
@@ -35,11 +22,6 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     int64_t got;
     switch (key) {
     case 'r': req->root = value; return 0;
-    case 'o':
-        if (strcmp(value, "plain") != 0 && strcmp(value, "assimp") != 0)
-            argp_error(state, "unknown reader '%s'; use plain or assimp", value);
-        req->reader = *value == 'p' ? READER_PLAIN : READER_ASSIMP;
-        return 0;
     case 'm':
     case 's':
     case 't':
@@ -67,10 +49,6 @@ static const struct argp_option options[] = {
      .key = 'r',
      .arg = "FOLDER",
      .doc = "Open only files below this folder, an absolute path without links"},
-    {.name = "obj",
-     .key = 'o',
-     .arg = "READER",
-     .doc = "Read OBJ files only with the fast reader of plain files, or only with assimp: plain or assimp"},
     {0},
 };
 
@@ -105,15 +83,22 @@ static void limit_all(const request *req)
 
 static status convert(const request *req, diagnostic *why)
 {
+    static flat_mesh flat;
     const struct aiScene *scene;
-    flat_mesh flat = {0};
-    if (req->kind == FILE_OBJ && req->reader != READER_ASSIMP && obj_read(req, &flat, &scene))
-        return write_mesh(req, scene, &flat, stdout, why);
-    if (req->reader == READER_PLAIN)
-        return diagnose_at(why, req->path, STATUS_BAD_INPUT, "leave out --obj", "this is not a plain OBJ file");
-    TRY(read_scene(req, &scene, why));
-    TRY(flatten(req, scene, &flat, why));
-    return write_mesh(req, scene, &flat, stdout, why);
+    switch (req->kind) {
+    case FILE_OBJ:
+    case FILE_PLY:
+    case FILE_STL: TRY(plain_read(req, &flat, why)); break;
+    case FILE_GLTF:
+    case FILE_GLB:
+        TRY(read_scene(req, &scene, why));
+        TRY(flatten(req, scene, &flat, why));
+        break;
+    case FILE_UNKNOWN:
+        return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
+                           "unknown mesh format");
+    }
+    return flat_write(&flat, stdout, why);
 }
 
 static int work(void *context)
@@ -141,7 +126,7 @@ int main(int count, char **arguments)
     float_environment_set();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_parse(&parser, count, arguments, 0, NULL, &req);
-    req.kind = kind_of(req.path);
+    req.kind = file_kind_of(req.path);
     limit_all(&req);
     _exit(os_call_with_stack(work, &req)); /* no destructors run: the scene may be damaged */
 }

@@ -1,60 +1,69 @@
-/* The reader of plain OBJ files (obj.h). */
+/* Reads OBJ files: parses parts of the text in parallel, joins the vertices, and divides the faces into triangles. The
+ * result does not depend on how the text is divided. */
 #include "import/obj.h"
 #include "base/array.h"
-#include "base/file.h"
 #include "base/os_process.h"
 #include "base/thread_team.h"
-#include "import/import.h"
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-/* --- parts of the file, parsed in parallel; the result does not depend on how the file is divided --- */
 
 enum {
-    PART_BYTES_MIN = 1 << 20, /* a smaller part is not worth a thread */
-    FILE_BYTES_MIN = 16       /* assimp refuses smaller ones */
+    PARTS_MAX = 8,
+    PART_BYTES_MIN = 1 << 20 /* a smaller part is not worth a thread */
 };
 
-static const char *map_file(const request *req, size_t *size)
+/* The last vertex that was joined at a place; index_plus_1 is 0 if there is none. */
+typedef struct last_vertex {
+    int32_t uv, normal;
+    uint32_t index_plus_1;
+} last_vertex;
+
+/* A file; once merged, its first part has the places, texture coordinates and normals of all parts. */
+typedef struct obj_file {
+    const request *req;
+    flat_mesh *flat;
+    diagnostic *why;
+    obj_part parts[PARTS_MAX];
+    int part_count;
+    mtl_library library;
+    const char *material; /* its name, in the text; NULL: none */
+    size_t material_length;
+    int slot; /* of this material; -1: it has none yet */
+    last_vertex *last;
+    joiner join;
+    polygon shape;
+    uint32_t *indices; /* of a part with polygons */
+    size_t index_room;
+} obj_file;
+
+/* --- the parts --- */
+
+/* The first line end after `at` that no \ continues. */
+static const char *part_end(const char *at, const char *end)
 {
-    struct stat about;
-    const int fd = below_open(req->path, req->root);
-    void *bytes = MAP_FAILED;
-    if (fd >= 0 && fstat(fd, &about) == 0 && about.st_size >= FILE_BYTES_MIN)
-        bytes = mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0);
-    if (fd >= 0)
-        close(fd);
-    *size = bytes == MAP_FAILED ? 0 : (size_t)about.st_size;
-    return bytes == MAP_FAILED ? NULL : bytes;
+    for (;;) {
+        at = memchr(at, '\n', (size_t)(end - at));
+        const char *before = at - 1 - (at[-1] == '\r');
+        at++;
+        if (at == end || *before != '\\')
+            return at;
+    }
 }
 
-/* Divides the text into parts that end at line ends. False: the last line is too long. */
-static bool divide(obj_file *f, const char *text, size_t size)
+/* Divides the text, which ends with \n. */
+static void divide(obj_file *f, const char *text, size_t size)
 {
-    const char *end = memrchr(text, '\n', size);
-    end = end ? end + 1 : text;
-    const size_t rest = size - (size_t)(end - text);
-    if (rest > OBJ_LINE_MAX)
-        return false;
+    const char *at = text + text_begin(text, size), *end = text + size + (text[size - 1] != '\n');
     const int units = os_usable_units();
-    size_t count = units < 1 ? 1 : units > OBJ_THREADS_MAX ? OBJ_THREADS_MAX : (size_t)units;
+    size_t count = units < 1 ? 1 : units > PARTS_MAX ? PARTS_MAX : (size_t)units;
     if (count > size / PART_BYTES_MIN)
         count = size / PART_BYTES_MIN + 1;
-    for (const char *at = text; at < end;) {
+    while (at < end) {
         const size_t left = (size_t)(end - at), part = left / (count - (size_t)f->part_count);
-        const char *line_end = memchr(at + part - 1, '\n', left - part + 1);
-        f->parts[f->part_count++] = (obj_part){.begin = at, .end = line_end + 1};
-        at = line_end + 1;
+        const char *next = (size_t)f->part_count + 1 == count || part < 3 ? end : part_end(at + part - 1, end);
+        f->parts[f->part_count++] = (obj_part){.begin = at, .end = next};
+        at = next;
     }
-    if (rest > 0) {
-        memcpy(f->last_line, end, rest);
-        f->last_line[rest] = '\n';
-        f->parts[f->part_count++] = (obj_part){.begin = f->last_line, .end = f->last_line + rest + 1};
-    }
-    return true;
 }
 
 static void parse(void *parts, size_t index, int member)
@@ -63,23 +72,32 @@ static void parse(void *parts, size_t index, int member)
     obj_parse((obj_part *)parts + index);
 }
 
-/* Parses all parts; false: a part is not plain. */
-static bool parse_all(obj_file *f)
+static void locate(const obj_file *f, const obj_part *part, uint32_t line)
+{
+    long before = 1;
+    for (const obj_part *o = f->parts; o < part; o++)
+        before += (long)o->line;
+    diagnostic_locate(f->why, f->req->path, before + (long)line, 0);
+}
+
+static status parse_all(obj_file *f)
 {
     thread_team *team = thread_team_create(f->part_count);
     if (!team)
-        return false;
+        return no_memory_for(f->req, f->why);
     thread_team_run(team, parse, f->parts, (size_t)f->part_count);
     thread_team_destroy(team);
-    bool plain = true;
-    size_t uvs = 0;
-    for (int i = 0; i < f->part_count; i++) {
-        /* While a file has normals but no texture coordinates yet, assimp reads a face's texture indices as normals. */
-        plain &= f->parts[i].plain && !(f->parts[i].early && uvs == 0);
-        uvs += f->parts[i].uv_count;
-        f->triangle_count += f->parts[i].triangle_count;
+    for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++) {
+        if (o->no_memory)
+            return no_memory_for(f->req, f->why);
+        if (!o->fault)
+            continue;
+        locate(f, o, o->line);
+        const int length = o->word_length < 60 ? (int)o->word_length : 60;
+        return length > 0 ? diagnose(f->why, STATUS_BAD_INPUT, o->remedy, "%s: '%.*s'", o->fault, length, o->word)
+                          : diagnose(f->why, STATUS_BAD_INPUT, o->remedy, "%s", o->fault);
     }
-    return plain && f->triangle_count > 0;
+    return STATUS_OK;
 }
 
 static void copy(void *to, const void *from, size_t bytes)
@@ -88,132 +106,119 @@ static void copy(void *to, const void *from, size_t bytes)
         memcpy(to, from, bytes);
 }
 
+/* Makes the indices of the part absolute, and checks them. `before`: the part's own statements begin after these; the
+ * file has as many as the first part once all are merged. */
+static status resolve(const obj_file *f, obj_part *o, const size_t before[3], const size_t all[3])
+{
+    if (!o->relative && (size_t)o->highest.place <= all[0] && (size_t)o->highest.uv <= all[1] &&
+        (size_t)o->highest.normal <= all[2])
+        return STATUS_OK;
+    static const char *const names[] = {"vertex", "texture coordinate", "normal"};
+    int32_t *const highest[] = {&o->highest.place, &o->highest.uv, &o->highest.normal};
+    size_t at = 0;
+    for (size_t k = 0; k < o->face_count; k++)
+        for (const size_t end = at + obj_size(o, k); at < end; at++) {
+            int32_t *const parts[] = {&o->corners[at].place, &o->corners[at].uv, &o->corners[at].normal};
+            for (int q = 0; q < 3; q++) {
+                if (*parts[q] == 0)
+                    continue;
+                const int64_t index = obj_index(*parts[q], before[q]);
+                if (index < 1 || (size_t)index > all[q]) {
+                    locate(f, o, obj_face_line(o, k));
+                    return diagnose(f->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                                    "a face refers to %s %lld, but the file has %zu", names[q], (long long)index,
+                                    all[q]);
+                }
+                *parts[q] = (int32_t)index;
+                *highest[q] = *parts[q] > *highest[q] ? *parts[q] : *highest[q];
+            }
+        }
+    return STATUS_OK;
+}
+
 /* Appends the vertices, texture coordinates and normals of all parts to the first part's. */
-static bool merge_parts(obj_file *f)
+static status merge_parts(obj_file *f)
 {
     obj_part *all = &f->parts[0];
+    size_t before[PARTS_MAX][3] = {{0}};
     for (int i = 1; i < f->part_count; i++) {
-        const obj_part *o = &f->parts[i];
+        obj_part *o = &f->parts[i];
+        memcpy(before[i], (size_t[3]){all->place_count, all->uv_count, all->normal_count}, sizeof before[i]);
         if (!GROW(all->places, all->place_room, all->place_count + o->place_count) ||
             !GROW(all->uvs, all->uv_room, all->uv_count + o->uv_count) ||
             !GROW(all->normals, all->normal_room, all->normal_count + o->normal_count))
-            return false;
+            return no_memory_for(f->req, f->why);
         copy(all->places + all->place_count, o->places, o->place_count * sizeof *o->places);
         copy(all->uvs + all->uv_count, o->uvs, o->uv_count * sizeof *o->uvs);
         copy(all->normals + all->normal_count, o->normals, o->normal_count * sizeof *o->normals);
         all->place_count += o->place_count;
         all->uv_count += o->uv_count;
         all->normal_count += o->normal_count;
+        free(o->places), free(o->uvs), free(o->normals);
+        o->places = o->normals = NULL;
+        o->uvs = NULL;
     }
-    return true;
+    for (int i = 0; i < f->part_count; i++)
+        TRY(resolve(f, &f->parts[i], before[i], (size_t[3]){all->place_count, all->uv_count, all->normal_count}));
+    return STATUS_OK;
 }
 
-/* Whether all indices exist. */
-static bool indices_exist(const obj_file *f)
+/* Reads all libraries, so that a material may be used before the statement that names its library. */
+static status read_libraries(obj_file *f)
+{
+    const obj_event *last = NULL;
+    for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++)
+        for (const obj_event *e = o->events; e < o->events + o->event_count; e++) {
+            if (!e->library || (last && last->length == e->length && memcmp(last->names, e->names, e->length) == 0))
+                continue;
+            locate(f, o, e->line);
+            TRY(mtl_read(f->req, e->names, e->length, &f->library, f->flat, f->why));
+            last = e;
+        }
+    diagnostic_locate(f->why, f->req->path, 0, 0);
+    return STATUS_OK;
+}
+
+/* --- materials --- */
+
+static bool is_named(const mesh_material *m, const char *name, size_t length)
+{
+    return name ? m->name && strlen(m->name) == length && memcmp(m->name, name, length) == 0 : !m->name;
+}
+
+/* Finds the slot of the current material, or makes it. A name that no library has is a material of the default grey. */
+static status find_slot(obj_file *f)
+{
+    static const mesh_wire_material none = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
+    uint8_t slot;
+    for (unsigned i = 0; i < f->flat->material_count; i++)
+        if (is_named(&f->flat->materials[i], f->material, f->material_length)) {
+            f->slot = (int)i;
+            return STATUS_OK;
+        }
+    char *name = f->material ? strndup(f->material, f->material_length) : NULL;
+    if (f->material && !name)
+        return no_memory_for(f->req, f->why);
+    const mesh_material m =
+        f->material ? mtl_find(&f->library, f->material, f->material_length) : (mesh_material){.values = none};
+    const status code = flat_material(f->req, f->flat, &m.values, name, m.texture, &slot, f->why);
+    free(name);
+    f->slot = slot;
+    return code;
+}
+
+/* --- vertices --- */
+
+static void numbers_of(const obj_file *f, obj_corner c, double numbers[8])
 {
     const obj_part *all = &f->parts[0];
-    for (int i = 0; i < f->part_count; i++) {
-        const obj_corner h = f->parts[i].highest;
-        if (h.place > all->place_count || h.uv > all->uv_count || h.normal > all->normal_count)
-            return false;
-    }
-    return true;
-}
-
-static bool load_text(const request *req, obj_file *f, const char *text, size_t size)
-{
-    return divide(f, text, size) && parse_all(f) && f->triangle_count <= req->triangles && merge_parts(f) &&
-           indices_exist(f);
-}
-
-/* Parses the file. False: it is not plain, or memory ran out; the caller frees what was allocated. */
-static bool load(const request *req, obj_file *f)
-{
-    size_t size;
-    const char *text = map_file(req, &size);
-    const bool plain = text && load_text(req, f, text, size);
-    if (text)
-        munmap((void *)(uintptr_t)text, size);
-    return plain;
-}
-
-/* --- the triangles in the order of assimp, with joined vertices ---
- *
- * Puts the triangles of a plain OBJ file into the order in which assimp returns them, and joins their vertices. To find
- * the order, the materials and the meaning of groups, assimp reads a text with the same statements but only one
- * triangle per run of faces; the x of its vertex is the run's number. */
-
-enum {
-    RUNS_MAX = 1 << 24, /* a float represents the number of each run exactly */
-    AHEAD = 64          /* corners whose table entries are prefetched together */
-};
-
-/* A run of faces in the whole file. */
-typedef struct run {
-    obj_corner (*triangles)[3];
-    size_t count;
-} run;
-
-/* The last vertex that was joined at a position; index_plus_1 is 0 if there is none. */
-typedef struct last_vertex {
-    uint32_t uv, normal, index_plus_1;
-} last_vertex;
-
-typedef struct assembly {
-    const request *req;
-    flat_mesh *flat;
-    float (*places)[3], (*uvs)[2], (*normals)[3];
-    last_vertex *last;
-    joiner join;
-} assembly;
-
-/* ---- order and materials ---- */
-
-static void write_text(const obj_part *o, size_t from, size_t to, FILE *stream)
-{
-    if (to > from)
-        fwrite(o->text + from, 1, to - from, stream);
-}
-
-/* Lists the runs, and writes the text for assimp. */
-static bool list_runs(const obj_file *f, run **runs, char **text, size_t *length)
-{
-    size_t count = 0;
-    for (int i = 0; i < f->part_count; i++)
-        count += f->parts[i].run_count;
-    FILE *to = count <= RUNS_MAX ? open_memstream(text, length) : NULL;
-    *runs = malloc(count * sizeof **runs);
-    if (!to || !*runs)
-        return false;
-    fprintf(to, "# the order of faces\n");
-    count = 0;
-    for (int i = 0; i < f->part_count; i++) {
-        const obj_part *o = &f->parts[i];
-        size_t done = 0;
-        for (size_t r = 0; r < o->run_count; r++) {
-            write_text(o, done, o->runs[r].text_end, to);
-            done = o->runs[r].text_end;
-            (*runs)[count] = (run){o->triangles + o->runs[r].first, o->runs[r].count};
-            fprintf(to, "v %zu 0 0\n", count);
-            count++;
-            fprintf(to, "f %zu %zu %zu\n", count, count, count);
-        }
-        write_text(o, done, o->text_length, to);
-    }
-    return fclose(to) == 0;
-}
-
-/* ---- vertices ---- */
-
-static void numbers_of(const assembly *a, obj_corner c, double numbers[8])
-{
     memset(numbers, 0, 8 * sizeof *numbers);
     for (int k = 0; k < 3; k++) /* + 0.0: -0 becomes 0 */
-        numbers[k] = (double)a->places[c.place - 1][k] + 0.0;
+        numbers[k] = all->places[c.place - 1][k] + 0.0;
     for (int k = 0; c.normal && k < 3; k++)
-        numbers[3 + k] = (double)a->normals[c.normal - 1][k] + 0.0;
+        numbers[3 + k] = all->normals[c.normal - 1][k] + 0.0;
     for (int k = 0; c.uv && k < 2; k++)
-        numbers[6 + k] = (double)a->uvs[c.uv - 1][k] + 0.0;
+        numbers[6 + k] = all->uvs[c.uv - 1][k] + 0.0;
 }
 
 static bool is_last(const last_vertex *v, obj_corner c)
@@ -221,98 +226,107 @@ static bool is_last(const last_vertex *v, obj_corner c)
     return v->index_plus_1 && v->uv == c.uv && v->normal == c.normal;
 }
 
-/* Sets the vertices of up to AHEAD corners. False: out of memory, or too many vertices. */
-static bool join_corners(assembly *a, const obj_corner *corners, size_t count, uint32_t *indices)
+/* Sets the vertices of up to JOIN_BLOCK corners. */
+static status join_corners(obj_file *f, const obj_corner *corners, size_t count, uint32_t *indices)
 {
-    double numbers[AHEAD][8];
-    uint64_t hashes[AHEAD];
-    bool ready[AHEAD];
+    double numbers[JOIN_BLOCK][8];
+    uint64_t hashes[JOIN_BLOCK];
+    bool ready[JOIN_BLOCK];
     for (size_t i = 0; i < count; i++) {
-        ready[i] = !is_last(&a->last[corners[i].place - 1], corners[i]);
+        ready[i] = !is_last(&f->last[corners[i].place - 1], corners[i]);
         if (!ready[i])
             continue;
-        numbers_of(a, corners[i], numbers[i]);
-        hashes[i] = join_hash(a->flat, numbers[i]);
-        join_prefetch(&a->join, hashes[i]);
+        numbers_of(f, corners[i], numbers[i]);
+        hashes[i] = join_hash(f->flat, numbers[i]);
+        join_prefetch(&f->join, hashes[i]);
     }
     for (size_t i = 0; i < count; i++) {
-        last_vertex *last = &a->last[corners[i].place - 1];
+        last_vertex *last = &f->last[corners[i].place - 1];
         if (!is_last(last, corners[i])) {
             if (!ready[i]) { /* an earlier corner of this block has replaced the last vertex */
-                numbers_of(a, corners[i], numbers[i]);
-                hashes[i] = join_hash(a->flat, numbers[i]);
+                numbers_of(f, corners[i], numbers[i]);
+                hashes[i] = join_hash(f->flat, numbers[i]);
             }
-            if (join_vertex(&a->join, a->flat, a->req->vertices, numbers[i], hashes[i], &indices[i]) != JOINED)
-                return false;
+            TRY(join_vertex(f->req, &f->join, f->flat, numbers[i], hashes[i], &indices[i], f->why));
             *last = (last_vertex){corners[i].uv, corners[i].normal, indices[i] + 1};
         }
         indices[i] = last->index_plus_1 - 1;
     }
-    return true;
+    return STATUS_OK;
 }
 
-static bool append_run(assembly *a, const run *r, uint8_t slot)
+static status join_part(obj_file *f, const obj_part *o, uint32_t *indices)
 {
-    const obj_corner *corners = r->triangles[0];
-    uint32_t *indices = a->flat->triangles[a->flat->triangle_count];
-    memset(a->flat->slots + a->flat->triangle_count, slot, r->count);
-    a->flat->triangle_count += r->count;
-    for (size_t i = 0; i < 3 * r->count; i += AHEAD) {
-        const size_t left = 3 * r->count - i;
-        if (!join_corners(a, corners + i, left < AHEAD ? left : AHEAD, indices + i))
-            return false;
+    for (size_t i = 0; i < o->corner_count; i += JOIN_BLOCK) {
+        const size_t left = o->corner_count - i;
+        TRY(join_corners(f, o->corners + i, left < JOIN_BLOCK ? left : JOIN_BLOCK, indices + i));
     }
-    return true;
+    return STATUS_OK;
 }
 
-/* Fills `flat` with the runs in the order of the triangles of `order`, one per run. */
-static bool assemble(const request *req, const obj_file *f, const flat_mesh *order, const run *runs, flat_mesh *flat)
+/* --- faces --- */
+
+static status append_face(obj_file *f, const obj_part *o, size_t k, const uint32_t *indices)
 {
-    const obj_part *all = &f->parts[0];
-    for (int i = 0; i < f->part_count; i++) {
-        flat->with_uvs |= f->parts[i].highest.uv > 0;
-        flat->with_normals |= f->parts[i].highest.normal > 0;
-    }
-    flat->material_count = order->material_count;
-    memcpy(flat->materials, order->materials, sizeof flat->materials);
-    const size_t triangles = f->triangle_count * sizeof *flat->triangles;
-    flat->triangles = large_pages(malloc(triangles), triangles);
-    flat->slots = malloc(f->triangle_count);
-    assembly a = {req, flat, all->places, all->uvs, all->normals, large_calloc(all->place_count, sizeof(last_vertex)),
-                  {0}};
-    bool good = flat->triangles && flat->slots && a.last && join_reserve(&a.join, flat, all->place_count);
-    for (size_t t = 0; t < order->triangle_count && good; t++)
-        good = append_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);
-    free(a.last);
-    free(a.join.table);
-    return good;
+    if (f->slot < 0)
+        TRY(find_slot(f));
+    if (o->sizes)
+        return polygon_append(f->req, &f->shape, indices, o->sizes[k], (uint8_t)f->slot, f->flat, f->why);
+    f->flat->slots[f->flat->triangle_count++] = (uint8_t)f->slot; /* its indices are there already */
+    return STATUS_OK;
 }
 
-static bool read_all(const request *req, obj_file *f, flat_mesh *flat, const struct aiScene **scene)
+static status append_part(obj_file *f, const obj_part *o)
 {
-    run *runs = NULL;
-    char *text = NULL;
-    size_t length;
-    flat_mesh order = {0};
-    bool good = list_runs(f, &runs, &text, &length) && (*scene = read_scene_text(req, text, length)) &&
-                flatten(req, *scene, &order, NULL) == STATUS_OK && assemble(req, f, &order, runs, flat);
-    free(runs);
-    free(text);
-    return good;
+    if (o->sizes && !GROW(f->indices, f->index_room, o->corner_count))
+        return no_memory_for(f->req, f->why);
+    uint32_t *indices = o->sizes ? f->indices : f->flat->triangles[f->flat->triangle_count];
+    TRY(join_part(f, o, indices));
+    size_t event = 0;
+    for (size_t k = 0; k <= o->face_count; k++) {
+        for (; event < o->event_count && o->events[event].face == k; event++)
+            if (!o->events[event].library) {
+                f->material = o->events[event].names;
+                f->material_length = o->events[event].length;
+                f->slot = -1;
+            }
+        if (k == o->face_count)
+            break;
+        TRY(append_face(f, o, k, indices));
+        indices += obj_size(o, k);
+    }
+    return STATUS_OK;
 }
 
-bool obj_read(const request *req, flat_mesh *flat, const struct aiScene **scene)
+static status assemble(obj_file *f)
 {
-    obj_file *f = calloc(1, sizeof *f);
-    const bool good = f && load(req, f) && read_all(req, f, flat, scene);
-    if (!good) { /* assimp needs the memory */
-        free(flat->triangles), free(flat->slots), free(flat->positions), free(flat->normals), free(flat->uvs);
-        *flat = (flat_mesh){0};
+    uint64_t triangles = 0;
+    for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++) {
+        triangles += o->corner_count - 2 * o->face_count;
+        f->flat->with_uvs |= o->highest.uv > 0;
+        f->flat->with_normals |= o->highest.normal > 0;
     }
-    for (int i = 0; f && i < f->part_count; i++) {
-        obj_part *o = &f->parts[i];
-        free(o->places), free(o->uvs), free(o->normals), free(o->triangles), free(o->runs), free(o->text);
-    }
-    free(f);
-    return good;
+    TRY(flat_reserve(f->req, f->flat, triangles, f->why));
+    f->last = large_calloc(f->parts[0].place_count, sizeof *f->last);
+    if (!f->last || !join_reserve(&f->join, f->flat, f->parts[0].place_count))
+        return no_memory_for(f->req, f->why);
+    for (int i = 0; i < f->part_count; i++)
+        TRY(append_part(f, &f->parts[i]));
+    return STATUS_OK;
+}
+
+status obj_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why)
+{
+    obj_file f = {.req = req, .flat = flat, .why = why, .slot = -1};
+    divide(&f, text, size);
+    status code = parse_all(&f);
+    THEN(code, merge_parts(&f));
+    THEN(code, read_libraries(&f));
+    THEN(code, assemble(&f));
+    for (int i = 0; i < f.part_count; i++)
+        obj_part_release(&f.parts[i]);
+    mtl_release(&f.library);
+    polygon_release(&f.shape);
+    free(f.last), free(f.join.table), free(f.indices);
+    return code;
 }

@@ -1,226 +1,309 @@
-/* The statements of an OBJ file, line by line. No function reads beyond the \n of its line. */
+/* The statements of an OBJ file, line by line. No function reads beyond the line end of its line, unless \ continues
+ * it. */
 #include "base/array.h"
+#include "base/number.h"
 #include "import/obj.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
-
-/* --- numbers, as assimp rounds them, independent of the locale --- */
-
-enum { INTEGER_MAX = 18, FRACTION_MAX = 15, EXPONENT_MAX = 3 }; /* largest numbers of digits */
-
-static bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
-/* Reads up to `most` digits; returns how many there are. */
-static int digits(const char **at, int most, uint64_t *value)
-{
-    const char *p = *at;
-    uint64_t sum = 0;
-    for (; is_digit(*p) && p - *at < most; p++)
-        sum = sum * 10 + (uint64_t)(*p - '0');
-    const int count = (int)(p - *at);
-    *value = sum;
-    *at = p;
-    return count;
-}
-
-bool obj_number(const char **at, float *number)
-{
-    static const double tenth[FRACTION_MAX + 1] = {0.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
-                                                   1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
-    const char *p = *at;
-    const bool minus = *p == '-';
-    uint64_t integer, fraction, exponent;
-    if (*p == '.') /* assimp refuses .5, but not +.5 */
-        return false;
-    p += minus || *p == '+';
-    const int before = digits(&p, INTEGER_MAX, &integer);
-    if (is_digit(*p))
-        return false;
-    float value = (float)integer;
-    int after = 0;
-    if (*p == '.') {
-        p++;
-        after = digits(&p, FRACTION_MAX, &fraction);
-        while (is_digit(*p))
-            p++;
-        if (after > 0)
-            value += (float)((double)fraction * tenth[after]);
-    }
-    if (before == 0 && after == 0)
-        return false;
-    if (*p == 'e' || *p == 'E') {
-        p++;
-        const bool negative = *p == '-';
-        p += negative || *p == '+';
-        if (digits(&p, EXPONENT_MAX, &exponent) == 0 || is_digit(*p))
-            return false;
-        value *= powf(10.0F, negative ? -(float)exponent : (float)exponent);
-    }
-    *number = minus ? -value : value;
-    *at = p;
-    return true;
-}
-
-bool obj_index(const char **at, uint32_t *index)
-{
-    uint64_t value;
-    if (digits(at, 9, &value) == 0 || is_digit(**at) || value == 0)
-        return false;
-    *index = (uint32_t)value;
-    return true;
-}
-
-/* --- statements --- */
 
 #define ROOM_FOR_ONE(o, array, room, count) ((o)->count < (o)->room || GROW((o)->array, (o)->room, (o)->count + 1))
 
+/* --- words --- */
+
 static bool is_blank(char c)
 {
-    return c == ' ' || c == '\t';
+    return c == ' ' || c == '\t' || c == '\f' || c == '\v';
 }
 
-/* Moves past blanks; false if there are none. */
-static bool skip_blanks(const char **at)
+/* The end of a statement: the end of its line, or a comment. */
+static bool is_end(char c)
+{
+    return c == '\n' || c == '\r' || c == '#';
+}
+
+/* Moves past blanks, and past a line end after \. */
+static const char *skip_blanks(obj_part *o, const char *p)
+{
+    for (;; p++) {
+        if (*p == '\\' && (p[1] == '\n' || p[1] == '\r')) {
+            p += p[1] == '\r' && p[2] == '\n' ? 2 : 1;
+            o->line++;
+            if (p + 1 >= o->end)
+                return p; /* the line end of the part's last line */
+        } else if (!is_blank(*p)) {
+            return p;
+        }
+    }
+}
+
+/* Moves past the end of the line. */
+static const char *next_line(obj_part *o, const char *p)
+{
+    while (*p != '\n' && *p != '\r')
+        p++;
+    o->line++;
+    return p + (p[0] == '\r' && p + 1 < o->end && p[1] == '\n' ? 2 : 1);
+}
+
+/* Records a mistake, and the word that begins at p, if there is one; returns NULL. */
+static const char *fail(obj_part *o, const char *p, const char *fault, const char *remedy)
+{
+    o->fault = fault;
+    o->remedy = remedy;
+    o->word = p;
+    while (!is_blank(*p) && *p != '\n' && *p != '\r')
+        p++;
+    o->word_length = (size_t)(p - o->word);
+    return NULL;
+}
+
+static const char *no_memory(obj_part *o)
+{
+    o->no_memory = true;
+    return NULL;
+}
+
+/* --- v, vt, vn --- */
+
+/* What one of these statements may have. */
+typedef struct form {
+    int least, most; /* numbers */
+    double far;      /* the largest magnitude of the first three */
+    const char *word, *few, *remedy;
+} form;
+
+static const form place_form = {3,
+                                8,
+                                MESH_WIRE_FAR,
+                                "a vertex has a word that is not a finite number within 1e9",
+                                "a vertex has fewer than three numbers",
+                                "give three finite numbers"};
+static const form uv_form = {1,
+                             3,
+                             HUGE_VAL,
+                             "a texture coordinate has a word that is not a finite number",
+                             "a texture coordinate has no numbers",
+                             "give two finite numbers"};
+static const form normal_form = {3,
+                                 3,
+                                 HUGE_VAL,
+                                 "a normal has a word that is not a finite number",
+                                 "a normal has fewer than three numbers",
+                                 "give three finite numbers"};
+
+/* Reads the numbers of a statement to the end of its line. A place may be followed by a weight or a colour, which are
+ * not used: x, y, z are as written. */
+static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[8])
+{
+    int count = 0;
+    for (; count < f->most; count++) {
+        p = skip_blanks(o, p);
+        if (is_end(*p))
+            break;
+        const char *word = p;
+        if (!number_scan(&p, &v[count]) || !(is_blank(*p) || is_end(*p) || *p == '\\') ||
+            (count < 3 && fabs(v[count]) > f->far))
+            return fail(o, word, f->word, f->remedy);
+    }
+    return count < f->least ? fail(o, p, f->few, f->remedy) : next_line(o, p);
+}
+
+static const char *read_place(obj_part *o, const char *p)
+{
+    double v[8];
+    if (!ROOM_FOR_ONE(o, places, place_room, place_count))
+        return no_memory(o);
+    p = read_numbers(o, p, &place_form, v);
+    memcpy(o->places[o->place_count++], v, sizeof *o->places);
+    return p;
+}
+
+static const char *read_uv(obj_part *o, const char *p)
+{
+    double v[8] = {0.0, 0.0};
+    if (!ROOM_FOR_ONE(o, uvs, uv_room, uv_count))
+        return no_memory(o);
+    p = read_numbers(o, p, &uv_form, v);
+    memcpy(o->uvs[o->uv_count++], v, sizeof *o->uvs);
+    return p;
+}
+
+static const char *read_normal(obj_part *o, const char *p)
+{
+    double v[8];
+    if (!ROOM_FOR_ONE(o, normals, normal_room, normal_count))
+        return no_memory(o);
+    p = read_numbers(o, p, &normal_form, v);
+    memcpy(o->normals[o->normal_count++], v, sizeof *o->normals);
+    return p;
+}
+
+/* --- f --- */
+
+/* Reads an index, of the `count` statements so far if it is relative: -1 is the last one. */
+static bool read_index(obj_part *o, const char **at, size_t count, int32_t *index)
 {
     const char *p = *at;
-    while (is_blank(*p))
-        p++;
-    const bool some = p > *at;
+    const bool negative = *p == '-';
+    int64_t value = 0;
+    p += negative || *p == '+';
+    const char *digits = p;
+    for (; *p >= '0' && *p <= '9'; p++)
+        value = value > OBJ_INDEX_MAX ? value : 10 * value + (*p - '0');
+    if (p == digits || value == 0 || value > OBJ_INDEX_MAX || count > OBJ_INDEX_MAX)
+        return false;
+    *index = negative ? (int32_t)((int64_t)count + 1 - value - OBJ_RELATIVE) : (int32_t)value;
+    o->relative |= negative;
     *at = p;
-    return some;
+    return true;
 }
 
-/* Moves past the end of the line; false if something precedes it. */
-static bool end_line(const char **at)
-{
-    skip_blanks(at);
-    *at += **at == '\r';
-    return *(*at)++ == '\n';
-}
-
-/* Reads `count` numbers and the end of the line. */
-static bool read_numbers(const char **at, int count, float *numbers)
-{
-    for (int i = 0; i < count; i++)
-        if (!skip_blanks(at) || !obj_number(at, &numbers[i]))
-            return false;
-    return end_line(at);
-}
-
-/* Reads a corner: place, place/uv, place//normal or place/uv/normal. */
-static bool read_corner(const char **at, obj_corner *corner)
-{
-    *corner = (obj_corner){0, 0, 0};
-    if (!obj_index(at, &corner->place))
-        return false;
-    if (**at != '/')
-        return true;
-    (*at)++;
-    if (**at != '/' && !obj_index(at, &corner->uv))
-        return false;
-    if (**at != '/')
-        return true;
-    (*at)++;
-    return obj_index(at, &corner->normal);
-}
-
-/* Reads a triangle. Polygons, and faces whose corners differ in form, are left to assimp. */
-static bool read_face(const char **at, obj_corner triangle[3])
-{
-    for (int k = 0; k < 3; k++) {
-        if (!skip_blanks(at) || !read_corner(at, &triangle[k]))
-            return false;
-        if (!triangle[k].uv != !triangle[0].uv || !triangle[k].normal != !triangle[0].normal)
-            return false;
-    }
-    return end_line(at);
-}
-
-static uint32_t larger(uint32_t a, uint32_t b)
+static int32_t larger(int32_t a, int32_t b)
 {
     return a > b ? a : b;
 }
 
-static bool add_face(obj_part *o, const char **at)
+/* Reads a corner: place, place/uv, place//normal or place/uv/normal. */
+static bool read_corner(obj_part *o, const char **at, obj_corner *c)
 {
-    if (!ROOM_FOR_ONE(o, triangles, triangle_room, triangle_count) || !read_face(at, o->triangles[o->triangle_count]))
+    *c = (obj_corner){0, 0, 0};
+    if (!read_index(o, at, o->place_count, &c->place))
         return false;
-    if (o->run_count == 0 || o->runs[o->run_count - 1].text_end != o->text_length) {
-        if (!GROW(o->runs, o->run_room, o->run_count + 1))
+    for (int k = 0; k < 2 && **at == '/'; k++) {
+        ++*at;
+        const bool given = **at == '-' || **at == '+' || (**at >= '0' && **at <= '9');
+        if (given &&
+            !(k == 0 ? read_index(o, at, o->uv_count, &c->uv) : read_index(o, at, o->normal_count, &c->normal)))
             return false;
-        o->runs[o->run_count++] = (obj_run){o->triangle_count, 0, o->text_length};
     }
-    o->runs[o->run_count - 1].count++;
-    const obj_corner *corner = o->triangles[o->triangle_count++];
-    o->early = o->early || (corner->uv > 0 && o->uv_count == 0);
-    for (int k = 0; k < 3; k++)
-        o->highest = (obj_corner){larger(o->highest.place, corner[k].place), larger(o->highest.uv, corner[k].uv),
-                                  larger(o->highest.normal, corner[k].normal)};
+    o->highest = (obj_corner){larger(o->highest.place, c->place), larger(o->highest.uv, c->uv),
+                              larger(o->highest.normal, c->normal)};
+    return is_blank(**at) || is_end(**at) || **at == '\\';
+}
+
+/* Records a face, whose corners are recorded already. Sizes are stored from the first polygon on. */
+static bool add_face(obj_part *o, uint32_t size)
+{
+    if (size > 3 && !o->sizes) {
+        if (!GROW(o->sizes, o->size_room, o->face_count + 1))
+            return false;
+        for (size_t i = 0; i < o->face_count; i++)
+            o->sizes[i] = 3;
+    }
+    if (o->sizes) {
+        if (!ROOM_FOR_ONE(o, sizes, size_room, face_count))
+            return false;
+        o->sizes[o->face_count] = size;
+    }
+    o->face_count++;
     return true;
 }
 
-static bool starts_with(const char *line, size_t length, const char *word)
+static const char *read_face(obj_part *o, const char *p)
 {
-    const size_t n = strlen(word);
-    return length >= n && memcmp(line, word, n) == 0 && (length == n || is_blank(line[n]));
+    const size_t first = o->corner_count;
+    for (p = skip_blanks(o, p); !is_end(*p); p = skip_blanks(o, p)) {
+        const char *word = p;
+        if (!ROOM_FOR_ONE(o, corners, corner_room, corner_count))
+            return no_memory(o);
+        if (!read_corner(o, &p, &o->corners[o->corner_count++]))
+            return fail(o, word, "a corner of a face is invalid",
+                        "give indices of vertices, such as 1, 1/1, 1//1 or 1/1/1");
+        if (o->corner_count - first > POLYGON_MAX)
+            return fail(o, word, "a face has more than 65536 corners", "divide it into triangles");
+    }
+    const size_t count = o->corner_count - first;
+    if (count < 3) /* a point or a line */
+        o->corner_count = first;
+    else if (!add_face(o, (uint32_t)count))
+        return no_memory(o);
+    return next_line(o, p);
 }
 
-/* Skips a comment; copies a statement on groups or materials to the part's text. False: any other statement. */
-static bool read_text(obj_part *o, const char **at)
+/* --- usemtl, mtllib; the rest --- */
+
+/* Records the names in the rest of the line. */
+static const char *read_names(obj_part *o, const char *p, bool library)
 {
-    static const char *const keywords[] = {"o", "g", "s", "usemtl", "mtllib"};
-    const char *line = *at, *end = memchr(line, '\n', (size_t)(o->end - line));
-    size_t length = (size_t)(end - line);
-    length -= length > 0 && line[length - 1] == '\r';
-    *at = end + 1;
-    if (length == 0)
-        return true;
-    if (line[length - 1] == '\\' || memchr(line, 0, length) || memchr(line, '\r', length)) /* \ continues a line */
-        return false;
-    if (line[0] == '#')
-        return true;
-    bool known = false;
-    for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
-        known |= starts_with(line, length, keywords[i]);
-    if (!known || !GROW(o->text, o->text_room, o->text_length + length + 1))
-        return false;
-    memcpy(o->text + o->text_length, line, length);
-    o->text[o->text_length + length] = '\n';
-    o->text_length += length + 1;
-    return true;
+    while (is_blank(*p))
+        p++;
+    const char *end = p;
+    while (*end != '\n' && *end != '\r')
+        end++;
+    const char *zero = memchr(p, 0, (size_t)(end - p));
+    size_t length = (size_t)((zero ? zero : end) - p);
+    while (length > 0 && is_blank(p[length - 1]))
+        length--;
+    if (!GROW(o->events, o->event_room, o->event_count + 1))
+        return no_memory(o);
+    o->events[o->event_count++] = (obj_event){o->face_count, length, p, o->line, library};
+    return next_line(o, end);
 }
 
-static bool read_line(obj_part *o, const char **at)
+/* Skips a statement that is not read. \ continues it, unless it is a comment. */
+static const char *skip_statement(obj_part *o, const char *p)
 {
-    const char *p = *at;
-    if (p[0] == 'v' && is_blank(p[1])) {
-        *at = p + 1;
-        return ROOM_FOR_ONE(o, places, place_room, place_count) && read_numbers(at, 3, o->places[o->place_count++]);
+    const bool comment = *p == '#';
+    const char *end = p;
+    for (;; end++) {
+        while (*end != '\n' && *end != '\r')
+            end++;
+        if (comment || end == p || end[-1] != '\\')
+            return next_line(o, end);
+        const char *next = end + (end[0] == '\r' && end + 1 < o->end && end[1] == '\n' ? 2 : 1);
+        if (next >= o->end)
+            return next_line(o, end);
+        o->line++;
+        end = next - 1;
     }
-    if (p[0] == 'f' && is_blank(p[1])) {
-        *at = p + 1;
-        return add_face(o, at);
-    }
-    if (p[0] == 'v' && p[1] == 't' && is_blank(p[2])) {
-        *at = p + 2;
-        return ROOM_FOR_ONE(o, uvs, uv_room, uv_count) && read_numbers(at, 2, o->uvs[o->uv_count++]);
-    }
-    if (p[0] == 'v' && p[1] == 'n' && is_blank(p[2])) {
-        *at = p + 2;
-        return ROOM_FOR_ONE(o, normals, normal_room, normal_count) &&
-               read_numbers(at, 3, o->normals[o->normal_count++]);
-    }
-    return read_text(o, at);
+}
+
+/* The end of the keyword at p if a blank follows it; NULL: another one. */
+static const char *after(const char *p, const char *keyword)
+{
+    for (; *keyword; p++, keyword++)
+        if (*p != *keyword)
+            return NULL;
+    return is_blank(*p) || *p == '\n' || *p == '\r' || *p == '\\' ? p : NULL;
+}
+
+static const char *read_line(obj_part *o, const char *p)
+{
+    const char *rest;
+    while (is_blank(*p))
+        p++;
+    if ((rest = after(p, "v")))
+        return read_place(o, rest);
+    if ((rest = after(p, "f")) || (rest = after(p, "fo"))) /* fo: an older name */
+        return read_face(o, rest);
+    if ((rest = after(p, "vt")))
+        return read_uv(o, rest);
+    if ((rest = after(p, "vn")))
+        return read_normal(o, rest);
+    if ((rest = after(p, "usemtl")))
+        return read_names(o, rest, false);
+    if ((rest = after(p, "mtllib")))
+        return read_names(o, rest, true);
+    return skip_statement(o, p);
 }
 
 void obj_parse(obj_part *o)
 {
-    o->plain = true;
-    for (const char *at = o->begin; at < o->end && o->plain;) {
-        const char *line = at;
-        o->plain = read_line(o, &at) && at - line <= OBJ_LINE_MAX;
-    }
+    for (const char *at = o->begin; at && at < o->end && (o->until == 0 || o->face_count < o->until);)
+        at = read_line(o, at);
+}
+
+uint32_t obj_face_line(const obj_part *part, size_t face)
+{
+    obj_part again = {.begin = part->begin, .end = part->end, .until = face + 1};
+    obj_parse(&again);
+    const uint32_t line = again.line - 1;
+    obj_part_release(&again);
+    return line;
+}
+
+void obj_part_release(obj_part *o)
+{
+    free(o->places), free(o->uvs), free(o->normals), free(o->corners), free(o->sizes), free(o->events);
 }

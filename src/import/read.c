@@ -1,7 +1,7 @@
-/* Reads a mesh file with assimp, and flattens its scene to one mesh. */
-#include "base/file.h"
+/* Reads a glTF file with assimp, and flattens its scene to one mesh. */
 #include "import/import.h"
 #include <assimp/cimport.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <jansson.h>
 #include <stdlib.h>
@@ -16,7 +16,9 @@ enum { STEPS = aiProcess_ValidateDataStructure | aiProcess_Triangulate };
 static bool locate_json(const request *req, diagnostic *why)
 {
     json_error_t error;
-    FILE *stream = files_open(req);
+    const char *reason;
+    const int fd = files_open(req->path, req->root, &reason);
+    FILE *stream = fd >= 0 ? fdopen(fd, "rb") : NULL;
     if (!stream)
         return false;
     json_t *root = json_loadf(stream, JSON_REJECT_DUPLICATES, &error);
@@ -31,15 +33,9 @@ static bool locate_json(const request *req, diagnostic *why)
 /* Converts an error message of assimp to a diagnostic. */
 static status explain(const request *req, const file_access *access, const char *message, diagnostic *why)
 {
-    static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
     diagnostic_locate(why, req->path, 0, 0);
-    if (access->outside)
-        return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, "needs the file '%s', which %s", access->missing,
-                        access->reason);
     if (access->missing[0])
-        return diagnose(
-            why, STATUS_BAD_INPUT, "put this file where the mesh file expects it, or remove the line that names it",
-            "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
+        return files_needed(access, why);
     if (strstr(message, "bad_alloc") || strstr(message, "length_error") || strstr(message, "bad_array_new_length") ||
         strstr(message, "_M_") || strstr(message, "max_size"))
         return no_memory_for(req, why);
@@ -47,7 +43,8 @@ static status explain(const request *req, const file_access *access, const char 
         return STATUS_BAD_INPUT;
     if (!*message || strstr(message, "No suitable reader"))
         return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
-                        "this is not a file of format %s", names[req->kind]);
+                        "this is not a file of format %s",
+                        req->kind == FILE_GLTF ? "glTF 2.0" : "binary glTF 2.0 (glb)");
     return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", message);
 }
 
@@ -56,10 +53,6 @@ status read_scene(const request *req, const struct aiScene **out, diagnostic *wh
     file_access access;
     diagnostic_locate(why, req->path, 0, 0);
     TRY(files_check(req, why));
-    if (req->kind == FILE_UNKNOWN)
-        return diagnose(why, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
-                        "unknown mesh format");
-    TRY(files_check_complete(req, why));
     files_prepare(&access, req);
     const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
     if (!scene || access.missing[0]) {
@@ -68,17 +61,6 @@ status read_scene(const request *req, const struct aiScene **out, diagnostic *wh
     }
     *out = scene;
     return STATUS_OK;
-}
-
-const struct aiScene *read_scene_text(const request *req, const char *text, size_t length)
-{
-    file_access access;
-    files_prepare(&access, req);
-    access.path = req->path;
-    access.text = text;
-    access.text_length = length;
-    const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
-    return access.missing[0] ? NULL : scene;
 }
 
 /* --- flattening ---
@@ -148,9 +130,6 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     uint64_t before = w->triangles;
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
-    if (w->triangles > w->req->triangles)
-        return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
-                        (unsigned long long)w->req->triangles);
     if (w->triangles == before)
         return STATUS_OK;
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
@@ -160,23 +139,72 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     }
     w->vertices += mesh->mNumVertices;
     w->slot_of[mesh->mMaterialIndex] = 1;
-    /* The normals of an STL file are those of the facets, which follow from the triangles; with them no two facets
-     * would share a vertex. */
-    w->flat->with_normals |= mesh->mNormals != NULL && w->req->kind != FILE_STL;
+    w->flat->with_normals |= mesh->mNormals != NULL;
     w->flat->with_uvs |= mesh->mTextureCoords[0] != NULL;
     return STATUS_OK;
+}
+
+/* ---- materials ---- */
+
+static void get_color(const struct aiMaterial *material, const char *key, double to[3], float *alpha)
+{
+    struct aiColor4D color = {0, 0, 0, 1};
+    if (aiGetMaterialColor(material, key, 0, 0, &color) == aiReturn_SUCCESS) {
+        memcpy(to, (double[3]){color.r, color.g, color.b}, 3 * sizeof *to);
+        *alpha = color.a;
+    }
+}
+
+static void get_number(const struct aiMaterial *material, const char *key, double *to)
+{
+    float value;
+    if (aiGetMaterialFloatArray(material, key, 0, 0, &value, NULL) == aiReturn_SUCCESS)
+        *to = (double)value;
+}
+
+/* For triangles without a material assimp adds a default one after all others. */
+static bool is_given(const struct aiScene *scene, unsigned index, const struct aiString *name)
+{
+    return index + 1 != scene->mNumMaterials && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0;
+}
+
+static status add_material(const walk *w, unsigned index, uint8_t *slot)
+{
+    const struct aiMaterial *material = w->scene->mMaterials[index];
+    mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
+    float alpha = 1, unused;
+    double strength = 1; /* glTF's KHR_materials_emissive_strength */
+    struct aiString name, texture;
+    if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) != aiReturn_SUCCESS)
+        name = (struct aiString){0}; /* assimp leaves it undefined on failure */
+    get_color(material, "$clr.diffuse", m.diffuse, &alpha);
+    get_color(material, "$clr.ambient", m.ambient, &unused);
+    get_color(material, "$clr.specular", m.specular, &unused);
+    get_color(material, "$clr.emissive", m.emissive, &unused);
+    get_number(material, "$mat.emissiveIntensity", &strength);
+    for (int c = 0; c < 3; c++)
+        m.emissive[c] *= strength;
+    get_number(material, "$mat.shininess", &m.shininess);
+    get_number(material, "$mat.refracti", &m.ior);
+    m.opacity = (double)alpha;
+    get_number(material, "$mat.opacity", &m.opacity);
+    const bool textured = aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, &texture, NULL, NULL, NULL, NULL,
+                                               NULL, NULL) == aiReturn_SUCCESS,
+               inside = textured && texture.data[0] == '*'; /* the index of an image inside the file */
+    const bool given = is_given(w->scene, index, &name);
+    m.flags = (given ? MESH_WIRE_GIVEN : 0u) | (inside ? MESH_WIRE_TEXTURE_INSIDE : 0u);
+    return flat_material(w->req, w->flat, &m, given ? name.data : NULL, textured && !inside ? texture.data : NULL, slot,
+                         w->why);
 }
 
 static status number_slots(walk *w)
 {
     for (unsigned i = 0; i < sizeof w->slot_of / sizeof *w->slot_of; i++) {
-        if (w->slot_of[i]) {
-            if (w->flat->material_count == 256)
-                return diagnose(w->why, STATUS_BAD_INPUT, "merge equal materials",
-                                "more than 256 materials are in use");
-            w->flat->materials[w->flat->material_count++] = i;
-            w->slot_of[i] = (uint16_t)w->flat->material_count;
-        }
+        uint8_t slot;
+        if (!w->slot_of[i])
+            continue;
+        TRY(add_material(w, i, &slot));
+        w->slot_of[i] = (uint16_t)(slot + 1);
     }
     return STATUS_OK;
 }
@@ -236,8 +264,6 @@ static void vertex_numbers(const walk *w, const struct aiMesh *mesh, const node_
         numbers[6] = (double)mesh->mTextureCoords[0][i].x;
         numbers[7] = (double)mesh->mTextureCoords[0][i].y;
     }
-    for (int k = 0; k < 8; k++)
-        numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
 }
 
 /* Sets index[i] to USED for each vertex i of a triangle. */
@@ -256,32 +282,25 @@ static status mark_used(walk *w, const struct aiMesh *mesh, uint32_t *index)
     return STATUS_OK;
 }
 
-/* Joins the vertices that the mesh's triangles use; index[i] is set to the new index of vertex i. They are hashed in
- * blocks, so that the joiner's table is loaded meanwhile. */
-static status join_vertices(walk *w, const struct aiMesh *mesh, const node_transform *at, uint32_t *index)
+/* Joins the vertices that the mesh's triangles use; index[i] is set to the new index of vertex i. */
+static status join_used(walk *w, const struct aiMesh *mesh, const node_transform *at, uint32_t *index)
 {
-    enum { AHEAD = 16 };
-    double numbers[AHEAD][8];
-    uint64_t hashes[AHEAD];
+    double numbers[JOIN_BLOCK][8];
+    uint32_t joined[JOIN_BLOCK];
+    unsigned from[JOIN_BLOCK];
+    size_t count = 0;
     TRY(mark_used(w, mesh, index));
-    for (unsigned first = 0; first < mesh->mNumVertices; first += AHEAD) {
-        const unsigned count = mesh->mNumVertices - first < AHEAD ? mesh->mNumVertices - first : AHEAD;
-        for (unsigned k = 0; k < count; k++) {
-            vertex_numbers(w, mesh, at, first + k, numbers[k]);
-            hashes[k] = join_hash(w->flat, numbers[k]);
-            join_prefetch(&w->join, hashes[k]);
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        if (index[i] == USED) {
+            vertex_numbers(w, mesh, at, i, numbers[count]);
+            from[count++] = i;
         }
-        for (unsigned k = 0; k < count; k++) {
-            if (index[first + k] == UNUSED)
-                continue;
-            switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers[k], hashes[k], &index[first + k])) {
-            case JOINED: break;
-            case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
-            case JOIN_TOO_MANY:
-                return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
-                                "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
-            }
-        }
+        if (count < JOIN_BLOCK && i + 1 < mesh->mNumVertices)
+            continue;
+        TRY(join_vertices(w->req, &w->join, w->flat, numbers, count, joined, w->why));
+        for (size_t k = 0; k < count; k++)
+            index[from[k]] = joined[k];
+        count = 0;
     }
     return STATUS_OK;
 }
@@ -295,7 +314,7 @@ static status append_mesh(walk *w, const struct aiMesh *mesh, const affine *plac
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
     if (!index)
         return no_memory_for(w->req, w->why);
-    status code = join_vertices(w, mesh, &at, index);
+    status code = join_used(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
         const unsigned *corner = mesh->mFaces[f].mIndices;
         if (mesh->mFaces[f].mNumIndices == 3) {
@@ -316,18 +335,13 @@ status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat,
     walk w = {.req = req, .scene = scene, .flat = flat, .why = why};
     diagnostic_locate(why, req->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
-    if (code == STATUS_OK && w.triangles == 0)
-        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
-                        "the file has no triangles");
+    THEN(code, flat_reserve(req, flat, w.triangles, why));
     THEN(code, number_slots(&w));
-    if (code != STATUS_OK)
-        return code;
     /* few triangles have a vertex for each of them, so that more are seldom left after joining */
     const uint64_t vertices = w.vertices < w.triangles ? w.vertices : w.triangles;
-    flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
-    flat->slots = malloc((size_t)w.triangles);
-    code = flat->triangles && flat->slots && join_reserve(&w.join, flat, (size_t)vertices) ? visit_all(&w, append_mesh)
-                                                                                           : no_memory_for(req, why);
+    if (code == STATUS_OK && !join_reserve(&w.join, flat, (size_t)vertices))
+        code = no_memory_for(req, why);
+    THEN(code, visit_all(&w, append_mesh));
     free(w.join.table);
     return code;
 }

@@ -349,6 +349,16 @@ static void hint_at_tone(const scene *s, const note_sink *taker)
         note_report(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
 
+/* Notes what mesh files name or have, and their meshes lack. */
+static void hint_at_files(const scene *s, const note_sink *taker)
+{
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const char *note = face_materials_note(s->meshes[i].shading_materials);
+        if (*note)
+            note_report(taker, s->meshes[i].name, "file", NULL, "%s", note);
+    }
+}
+
 void scene_hints(const scene *s, const note_sink *taker)
 {
     size_t visible = 0, lit = 0, shining = 0;
@@ -382,5 +392,6 @@ void scene_hints(const scene *s, const note_sink *taker)
         }
     }
     hint_at_all_unseen(s, taker);
+    hint_at_files(s, taker);
     scene_range_hints(s, taker);
 }

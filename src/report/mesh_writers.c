@@ -1,5 +1,5 @@
-/* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, raw floats or
- * binary PLY. */
+/* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, raw numbers
+ * or binary PLY. */
 #include "report/mesh_writers.h"
 #include "base/cancel.h"
 #include "base/number.h"
@@ -130,7 +130,7 @@ static void write_bin(const mesh *m, FILE *stream)
 {
     for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++)
         for (int k = 0; k < 3; k++)
-            put_vector(m->vertices[m->triangles[t].corner[k]], true, stream);
+            put_vector(m->vertices[m->triangles[t].corner[k]], m->single, stream);
 }
 
 static void write_ply(const mesh *m, FILE *stream)

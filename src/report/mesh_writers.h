@@ -11,7 +11,7 @@ void mesh_rows_text(FILE *stream, const mesh *m);
 json_t *mesh_rows_json(const mesh *m);
 
 /*   obj  Wavefront: positions and triangles
- *   bin  nine little-endian floats per triangle, nothing else
+ *   bin  nine little-endian numbers per triangle, nothing else: floats if the mesh is in single precision, else doubles
  *   ply  Stanford, binary, little-endian: all data of the mesh (normals nx ny nz, texture coordinates s t, slots
  *        as material_index)
  *

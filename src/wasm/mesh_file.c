@@ -1,48 +1,82 @@
-/* Reads mesh files in a module: OBJ and PLY, by the readers of wasm/mesh, which the browser's sandbox confines. See
- * scene/assets/mesh_file.h. */
+/* Reads mesh files in a module: OBJ, PLY and STL, by the readers of the program's importer, which the browser's sandbox
+ * confines. See scene/assets/mesh_file.h. */
 #include "scene/assets/mesh_file.h"
-#include "base/file.h"
-#include "scene/assets/mesh_stream.h"
-#include "wasm/mesh/mesh.h"
+#include "base/text.h"
+#include "import/plain.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-enum { BYTES_MAX = 512 << 20 };
+/* The mesh in the form of the importer's answer. */
+typedef struct answer {
+    const char *bytes;
+    size_t left;
+} answer;
 
-static status read_parts(const char *path, const char *ending, mesh_parts *p, mesh_import **out, diagnostic *why)
+static status read_answer(void *context, void *bytes, size_t size, diagnostic *why)
 {
-    char *text = NULL;
+    answer *a = context;
+    if (a->left < size)
+        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the file", "the mesh is incomplete");
+    memcpy(bytes, a->bytes, size);
+    a->bytes += size;
+    a->left -= size;
+    return STATUS_OK;
+}
+
+static status end_answer(void *context, diagnostic *why)
+{
+    (void)context, (void)why;
+    return STATUS_OK;
+}
+
+/* Writes the mesh, releases it, and reads what was written, with the checks of the program. */
+static status import_flat(flat_mesh *flat, const mesh_limits *limits, mesh_import **out, diagnostic *why)
+{
+    text_writer to;
+    char *bytes = NULL;
     size_t size = 0;
-    TRY(file_read_below(path, p->limits->root, BYTES_MAX, &text, &size, why));
-    status code = size > 0 ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty");
-    THEN(code, mesh_parts_begin(p, p->limits, why));
-    THEN(code,
-         strcasecmp(ending, ".obj") == 0 ? obj_read_text(path, text, size, p, why) : ply_read_text(text, size, p, why));
-    free(text);
-    THEN(code, mesh_parts_import(p, out, why));
+    TRY(text_writer_open(&to, why));
+    status code = flat_write(flat, to.stream, why);
+    flat_release(flat);
+    code = text_writer_end(&to, code, &bytes, &size, why);
+    const mesh_source source = {.read = read_answer, .end = end_answer, .context = &(answer){bytes, size}};
+    THEN(code, mesh_stream_read(&source, limits, out, why));
+    free(bytes);
+    return code;
+}
+
+static status read_plain(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why)
+{
+    const request req = {.path = path,
+                         .kind = file_kind_of(path),
+                         .triangles = limits->triangles,
+                         .vertices = limits->vertices,
+                         .root = limits->root ? limits->root : ""};
+    if (req.kind != FILE_OBJ && req.kind != FILE_PLY && req.kind != FILE_STL)
+        return diagnose_at(why, path, STATUS_BAD_INPUT,
+                           "convert it to OBJ, PLY or STL, or open the scene with the program cuvette",
+                           "a browser reads meshes from .obj, .ply and .stl files only");
+    flat_mesh *flat = calloc(1, sizeof *flat);
+    status code = flat ? plain_read(&req, flat, why) : out_of_memory(why);
+    diagnostic_locate(why, path, code == STATUS_OK || !why ? 0 : why->line, 0);
+    THEN(code, import_flat(flat, limits, out, why));
     THEN(code, mesh_textures_find(path, *out, why));
+    if (flat)
+        flat_release(flat);
+    free(flat);
     return code;
 }
 
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why)
 {
     const mesh_limits all = mesh_limits_complete(limits);
-    const char *ending = strrchr(path, '.');
-    mesh_parts parts = {.limits = &all};
     diagnostic inner = {.line = 0};
     *out = NULL;
     if (!*path)
         return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the name of the mesh file is empty");
-    if (!ending || (strcasecmp(ending, ".obj") != 0 && strcasecmp(ending, ".ply") != 0))
-        return diagnose_at(why, path, STATUS_BAD_INPUT,
-                           "convert it to OBJ or PLY, or open the scene with the program cuvette",
-                           "a browser reads meshes from .obj and .ply files only");
-    diagnostic_locate(&inner, path, 0, 0);
     mesh_import *fresh = NULL;
-    const status code = read_parts(path, ending, &parts, &fresh, &inner);
-    mesh_parts_release(&parts);
+    const status code = read_plain(path, &all, &fresh, &inner);
     if (code == STATUS_OK) {
         *out = fresh;
         return code;

@@ -8,6 +8,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/number.h"
+#include "base/random.h"
 #include "base/status.h"
 #include "base/text.h"
 #include <errno.h>
@@ -424,9 +425,79 @@ static void small_blocks_are_not_advised(void **state)
     free(memory);
 }
 
+/* The text goes on with `rest`; the number is the one that strtod reads, bit for bit. */
+static void scan_as_strtod(const char *number, const char *rest)
+{
+    char text[128];
+    double got = 7.0;
+    snprintf(text, sizeof text, "%s%s", number, rest);
+    const char *at = text;
+    const double expected = strtod(number, NULL);
+    if (!number_scan(&at, &got) || memcmp(&got, &expected, sizeof got) != 0 || strcmp(at, rest) != 0)
+        fail_msg("'%s' is scanned as %.17g, and '%s' is left", text, got, at);
+}
+
+/* Few and many digits, on both sides of each limit of the fast paths; halves between two doubles. */
+static void numbers_are_scanned_as_the_nearest_double(void **state)
+{
+    (void)state;
+    static const char *const fixed[] = {"0",
+                                        "-0",
+                                        "+1.5",
+                                        ".5",
+                                        "5.",
+                                        "-.25e1",
+                                        "1e0",
+                                        "1E+3",
+                                        "0e999",
+                                        "1e22",
+                                        "1e23",
+                                        "1e-22",
+                                        "1e-23",
+                                        "9007199254740993",
+                                        "9007199254740993e22",
+                                        "9007199254740992.5",
+                                        "9007199254740993.0000000000001",
+                                        "18014398509481985e-5",
+                                        "5e-324",
+                                        "2.4703282292062327e-324",
+                                        "1.7976931348623157e308",
+                                        "00000000000000000000000001.5",
+                                        "0.000000000000000000000000000000000000000000000000000000012345",
+                                        "99999999999999999999999999999999999999999e-30"};
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++)
+        scan_as_strtod(fixed[i], i % 2 ? "\n" : "/2");
+    for (uint32_t i = 0; i < 300000; i++) {
+        const random_words drawn = random_at(3, i, 0, 0, 0);
+        const uint32_t *r = drawn.word;
+        const uint64_t digits = ((uint64_t)r[0] << 32 | r[1]) >> (r[2] % 64);
+        char text[64];
+        const int after = (int)(r[3] % 24);
+        double real;
+        const uint64_t bits = (uint64_t)(1023 - 70 + r[3] % 140) << 52 | digits >> 12;
+        memcpy(&real, &bits, sizeof real);
+        if (i % 3 == 0)
+            snprintf(text, sizeof text, "%s%llue%d", i % 2 ? "-" : "", (unsigned long long)digits, after - 12);
+        else if (i % 3 == 1)
+            snprintf(text, sizeof text, "%.*e", after, real);
+        else
+            snprintf(text, sizeof text, "%.*f", after, real);
+        scan_as_strtod(text, " ");
+    }
+    static const char *const none[] = {"",    ".",     "-",      "e5", "1e",  "1e+", "nan",
+                                       "inf", "1e999", "-1e999", " 1", "--1", "+-1"};
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+        const char *at = none[i];
+        double got;
+        assert_false(number_scan(&at, &got));
+        assert_ptr_equal(at, none[i]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_scanned_as_the_nearest_double),
         cmocka_unit_test(diagnose_fills_and_returns),
         cmocka_unit_test(diagnostic_text_omits_missing_parts),
         cmocka_unit_test(diagnostics_are_one_line_of_valid_utf8),

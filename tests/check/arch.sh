@@ -139,7 +139,7 @@ exchange() { # ARCHITECTURE
 
 unit_tests() { # ARCHITECTURE
     local code=0 test=("${unit[@]}")
-    # assimp refuses binary files on big-endian machines: CONTRIBUTING.md
+    # assimp refuses binary glTF on big-endian machines: CONTRIBUTING.md
     [[ $1 == s390x ]] && mapfile -t test < <(printf '%s\n' "${unit[@]}" | grep -vx mesh_file)
     CUVETTE_IMPORT=$work/import-$1 RUNNER=$(emulator "$1") TEST_LIMIT_S=3600 \
         tests/run "${test[@]/#/$folder/$1/tests/test_}" >"$work/unit" || code=1

@@ -66,7 +66,7 @@ w_import() {
     line=(mesh big.obj) longest=2
     [[ -e big.obj ]] || "$program" mesh --generate torus --around 1500 --tube 1000 -o big.obj
 }
-w_import_ply() { # by assimp
+w_import_ply() {
     line=(render ply.yaml -o p.png) files=p.png longest=2
     [[ -e big.ply ]] || "$program" mesh --generate torus --around 1500 --tube 1000 -o big.ply
     printf 'meshes: {m: {file: big.ply}}\nsolids: {s: {shape: mesh, mesh: m}}\n' >ply.yaml

@@ -360,6 +360,8 @@ check "mesh --json: no volume, but the hole" is "$(json closed volume hole.trian
     "$(lines false null 0 1)"
 run mesh --generate sparse --count 100 -f bin
 check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 out | wc -w)" "3600 3"
+run mesh --generate torus --around 5 --tube 4 -f bin
+check "mesh -f bin: 72 bytes a triangle that floats cannot represent" is "$(wc -c <out)" $((40 * 72))
 # checksums of the dumps of these triangles by the peers' program embree_bench
 for dump in "obj 894476047 13145" "bin 1098474655 3600"; do
     run mesh --generate sparse --count 100 -f "${dump%% *}"

@@ -3,10 +3,8 @@
 #pragma once
 
 #include "fuzz.h"
-#include "import/import.h"
-#include "import/obj.h"
+#include "import/plain.h"
 #include "scene/assets/mesh_stream.h"
-#include <assimp/cimport.h>
 
 typedef struct reply {
     char *at;
@@ -29,12 +27,12 @@ __attribute__((unused)) static status end_reply(void *context, diagnostic *why)
     return r->read == r->size ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, NULL, "goes on");
 }
 
-/* The reader may refuse what assimp makes of numbers that are not finite. */
-__attribute__((unused)) static void pass_on(const request *req, const struct aiScene *scene, const flat_mesh *flat)
+/* Numbers that are not finite, and materials out of range, are refused only here. */
+__attribute__((unused)) static void pass_on(const request *req, const flat_mesh *flat)
 {
     reply r = {0};
     FILE *to = open_memstream(&r.at, &r.size);
-    must(to && write_mesh(req, scene, flat, to, NULL) == STATUS_OK && fclose(to) == 0);
+    must(to && flat_write(flat, to, NULL) == STATUS_OK && fclose(to) == 0);
     const mesh_source source = {take_reply, end_reply, &r};
     const mesh_limits limits = {.triangles = req->triangles, .vertices = req->vertices};
     mesh_import *got = NULL;
@@ -46,8 +44,25 @@ __attribute__((unused)) static void pass_on(const request *req, const struct aiS
     free(r.at);
 }
 
-__attribute__((unused)) static void release_flat(flat_mesh *flat)
+__attribute__((unused)) static request request_of(const char *path, file_kind kind)
 {
-    free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->triangles), free(flat->slots);
-    *flat = (flat_mesh){0};
+    return (request){
+        .path = path, .kind = kind, .triangles = 10000, .vertices = 30000, .memory_mib = 1024, .root = fuzz_folder()};
+}
+
+/* Reads an OBJ, PLY or STL file. Every index must exist: mesh_stream_read refuses others. */
+__attribute__((unused)) static void read_plain(const char *name, file_kind kind, const uint8_t *data, size_t size)
+{
+    fuzz_write(name, data, size);
+    char *path = fuzz_path(name);
+    const request req = request_of(path, kind);
+    flat_mesh flat = {0};
+    diagnostic why = {.what = ""};
+    const status code = plain_read(&req, &flat, &why);
+    if (code == STATUS_OK)
+        pass_on(&req, &flat);
+    else
+        must_refuse(code, &why);
+    flat_release(&flat);
+    free(path);
 }

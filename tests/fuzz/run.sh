@@ -46,7 +46,7 @@ run() {
     mkdir -p "$build/corpus/$name"
     touch "$build/corpus/$name.ran"
     # The importer leaves its memory to the end of its process.
-    case $name in obj | import | http) export ASAN_OPTIONS=$asan:detect_leaks=0 ;; *) export ASAN_OPTIONS=$asan ;; esac
+    case $name in import | http) export ASAN_OPTIONS=$asan:detect_leaks=0 ;; *) export ASAN_OPTIONS=$asan ;; esac
     echo "$name, $2 s"
     "$build/tests/fuzz_$name" -max_total_time="$2" -timeout=25 -rss_limit_mb=2560 \
         -max_len=65536 -print_final_stats=1 \

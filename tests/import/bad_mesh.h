@@ -50,15 +50,15 @@ static const bad_mesh bad_meshes[] = {
     {"far.obj", "v 0 0 1e12\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
     {"overflow.obj", "v 0 0 1e60\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
     {"nan_normal.obj", THREE "vn nan 0 1\nf 1//1 2//1 3//1\n"},
+    {"uv_past_the_end.obj", THREE "vt 0 0\nf 1/1 2/9 3/1\n"},
+    {"normal_past_the_end.obj", THREE "vn 0 0 1\nf 1//1 2//1 3//9\n"},
+    {"nan_uv.obj", THREE "vt nan 0\nf 1/1 2/1 3/1\n"},
     {"one_coordinate.obj", "v 1\nv 2\nv 3\nf 1 2 3\n"},
     {"letters.obj", "v a b c\nv d e f\nv g h i\nf 1 2 3\n"},
     {"face_of_letters.obj", THREE "f a b c\n"},
-    {"mtl_missing.obj", "mtllib nowhere.mtl\n" THREE "f 1 2 3\n"},
-    {"mtl_absolute.obj", "mtllib /nowhere/a.mtl\n" THREE "f 1 2 3\n"},
     {"mtl_folder.obj", "mtllib folder\n" THREE "f 1 2 3\n"},
     {"mtl_fifo.obj", "mtllib fifo\n" THREE "f 1 2 3\n"},
     {"mtl_endless.obj", "mtllib /dev/zero\n" THREE "f 1 2 3\n"},
-    {"texture_missing.obj", "mtllib texture_missing.mtl\nusemtl a\n" THREE "f 1 2 3\n"},
     {"texture_folder.obj", "mtllib texture_folder.mtl\nusemtl a\n" THREE "f 1 2 3\n"},
     {"texture_fifo.obj", "mtllib texture_fifo.mtl\nusemtl a\n" THREE "f 1 2 3\n"},
     {"color_nan.obj", "mtllib color_nan.mtl\nusemtl a\n" THREE "f 1 2 3\n"},
@@ -202,12 +202,11 @@ static const bad_mesh bad_meshes[] = {
     {"collada.dae", "<COLLADA/>"},
 };
 
-/* Files that assimp accepts and repairs into a valid mesh: it drops references to missing normals and texture
- * coordinates, and replaces a NaN texture coordinate by 0. */
+/* Files that name others, which do not exist: read, with a note. */
 static const bad_mesh tolerated_meshes[] = {
-    {"uv_past_the_end.obj", THREE "vt 0 0\nf 1/1 2/9 3/1\n"},
-    {"normal_past_the_end.obj", THREE "vn 0 0 1\nf 1//1 2//1 3//9\n"},
-    {"nan_uv.obj", THREE "vt nan 0\nf 1/1 2/1 3/1\n"},
+    {"mtl_missing.obj", "mtllib nowhere.mtl\n" THREE "f 1 2 3\n"},
+    {"mtl_absolute.obj", "mtllib /nowhere/a.mtl\n" THREE "f 1 2 3\n"},
+    {"texture_missing.obj", "mtllib texture_missing.mtl\nusemtl a\n" THREE "f 1 2 3\n"},
 };
 
 /* Other files to which some of them refer. */

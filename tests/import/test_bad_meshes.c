@@ -88,6 +88,7 @@ static void tolerated_files_give_a_valid_mesh(void **state)
         mesh_import *got;
         assert_int_equal(mesh_read_file(path, &limits, &got, NULL), STATUS_OK);
         assert_int_equal(got->mesh->triangle_count, 1);
+        assert_non_null(strstr(got->note, "nowhere"));
         mesh_import_destroy(got);
         free(path);
     }
@@ -162,7 +163,7 @@ static void a_ply_with_invalid_lists_is_refused(void **state)
     }
     bytes b = binary_ply();
     memcpy(b.at + b.size - 4, "\xff\xff\xff\x7f", 4);
-    refuse_bytes("index_binary.ply", b, "range");
+    refuse_bytes("index_binary.ply", b, "face 4 refers to vertex 2147483647");
     b = (bytes){0};
     add_text(
         &b,
@@ -171,7 +172,7 @@ static void a_ply_with_invalid_lists_is_refused(void **state)
     add(&b, corners, 12);
     add_u32(&b, 0xffffffffu);
     add(&b, corners, 48);
-    refuse_bytes("list_of_4_billion.ply", b, "face 1 of 1");
+    refuse_bytes("list_of_4_billion.ply", b, "face 1 refers to vertex 1036831949");
 }
 
 static void a_glb_with_wrong_lengths_is_refused(void **state)
@@ -287,12 +288,12 @@ static void memory_and_time_have_limits(void **state)
     refuse_within("large.obj", &small, "longer than the limit of 0.001 s");
     /* One polygon with that many corners: ear clipping takes time proportional to the square. */
     b = (bytes){0};
-    for (int i = 0; i < 32000; i++) {
+    for (int i = 0; i < 64000; i++) {
         char line[64];
         add(&b, line, (size_t)snprintf(line, sizeof line, "v %d %d 0\n", i, i % 2 ? i : -i));
     }
     add_text(&b, "f");
-    for (int i = 0; i < 32000; i++) {
+    for (int i = 0; i < 64000; i++) {
         char word[16];
         add(&b, word, (size_t)snprintf(word, sizeof word, " %d", i + 1));
     }
@@ -312,7 +313,8 @@ static void folders_pipes_loops_and_devices_are_refused(void **state)
     assert_int_equal(mkfifo(fifo, 0666), 0);
     assert_int_equal(symlink("loop.obj", loop), 0);
     assert_int_equal(symlink("/dev/zero", endless), 0);
-    assert_int_equal(symlink("/proc/version", unmapped), 0); /* regular and of size 0, but not empty */
+    assert_int_equal(symlink("/proc/version", unmapped),
+                     0); /* regular and of size 0, but not empty: its text is read, which is no mesh */
     refuse_within("nowhere.obj", &limits, "No such file");
     refuse_within("nowhere/a.obj", &limits, "No such file");
     refuse_within("three.obj/a.obj", &limits, "");
@@ -320,7 +322,7 @@ static void folders_pipes_loops_and_devices_are_refused(void **state)
     refuse_within("fifo.ply", &limits, "not a regular file");
     refuse_within("loop.obj", &limits, "symbolic links");
     refuse_within("endless.glb", &limits, "not a regular file");
-    refuse_within("unmapped.stl", &limits, "cannot read: Invalid argument");
+    refuse_within("unmapped.stl", &limits, "the file ends within facet");
     free(path);
     free(fifo);
     free(loop);

@@ -5,43 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "mesh_files.h"
-#include "scene/assets/mesh_file.h"
-
-static mesh_import *read_mesh(const char *name)
-{
-    char *path = in_folder(name), text[DIAGNOSTIC_TEXT_MAX];
-    mesh_import *got;
-    diagnostic why = {.what = ""};
-    if (mesh_read_file(path, NULL, &got, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, text, sizeof text));
-    free(path);
-    return got;
-}
-
-static mesh_import *read_text(const char *name, const char *text)
-{
-    put_text(name, text);
-    return read_mesh(name);
-}
-
-static mesh_import *read_bytes(const char *name, bytes b)
-{
-    put(name, b.at, b.size);
-    free(b.at);
-    return read_mesh(name);
-}
-
-static void assert_vec3(vec3 got, double x, double y, double z)
-{
-    if (!(got.x == x && got.y == y && got.z == z)) /* exactly */
-        fail_msg("%.17g %.17g %.17g is not %.17g %.17g %.17g", got.x, got.y, got.z, x, y, z);
-}
-
-static vec3 corner(const mesh *m, size_t triangle, int k)
-{
-    return m->vertices[m->triangles[triangle].corner[k]];
-}
+#include "mesh_read.h"
 
 /* The tetrahedron of mesh_files.h, every corner bit-identical, moved by x. */
 static void assert_tetrahedron(const mesh_import *got, double x)
@@ -147,7 +111,7 @@ static void nearly_coincident_vertices_are_not_merged(void **state)
     (void)state;
     mesh_import *got = read_text("tiny.obj", "v 0 0 0\nv 1e-7 0 0\nv 0 1e-7 0\nf 1 2 3\n");
     assert_int_equal(got->mesh->vertex_count, 3);
-    assert_vec3(corner(got->mesh, 0, 1), (double)1e-7f, 0, 0);
+    assert_vec3(corner(got->mesh, 0, 1), 1e-7, 0, 0);
     mesh_import_destroy(got);
 }
 

@@ -222,7 +222,7 @@ static void material_libraries_outside_the_folder_are_refused(void **state)
     free(absolute);
 }
 
-/* In the working directory, assimp uses the name of a library unchanged. */
+/* The name of a library is absolute, and the model is in the working directory. */
 static void absolute_material_libraries_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
@@ -351,7 +351,7 @@ static void temporary_folders_of_killed_laboratories_are_removed(void **state)
 
 /* --- files replaced after the check --- */
 
-/* The model's own file is checked before it is passed to assimp. */
+/* The message is about the model's own file, not about one that it names. */
 static void is_refused_for_the_file_itself(const room *r)
 {
     char *message = trouble(r);

@@ -15,7 +15,7 @@ geometry  mesh hierarchy . primitives shapes regions
 render    plan photons tracer shade camera zbuffer integrators caustics frame inspect
 scene     model file assets motion package
 study     . plan rows run summary plot
-wasm      mesh . api
+wasm      . api
 web       http document live session api .
 '
 
@@ -119,8 +119,6 @@ plant import/a.c '"scene/assets/mesh_stream.h"' 'higher layer'
 plant wasm/a.c '"wasm/api/api.h"' 'later folder'
 plant render/plan/a.c '"render/shade/rough.h"' 'later folder'
 plant render/frame/a.c '"render/shade/rough.h"' ''
-plant wasm/mesh/a.c '"wasm/worker.h"' 'later folder'
-plant wasm/api/a.c '"wasm/mesh/mesh.h"' ''
 plant wasm/api/a.c '"wasm/api/exports.h"' ''
 plant wasm/api/deep/a.c '"wasm/api/exports.h"' ''
 mkdir -p "$folder/planted/wasm/attic"

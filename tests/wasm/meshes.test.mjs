@@ -153,6 +153,36 @@ function plyBinary(little, type = 'float') {
   return Buffer.concat([Buffer.from(header), Buffer.from(view.buffer)]);
 }
 
+const STRIPS = `ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z
+element tristrips 1
+property list int int vertex_indices
+end_header
+-1 -1 -1 1 -1 -1 -1 1 -0.9 1 1.1 -1 0 0.1 -2
+9 0 2 1 3 -1 4 0 1 2
+`;
+
+const TRIANGLES = FACES.filter((f) => f.length > 2).flatMap((f) => f.slice(2).map((c, i) => [f[0], f[i + 1], c]));
+
+const vertexText = (i) => `vertex ${VERTICES[i].join(' ')}\n`;
+const facetText = (t) => `facet normal 0 0 0\nouter loop\n${t.map(vertexText).join('')}endloop\nendfacet\n`;
+const stlText = () => `solid box\n${TRIANGLES.map(facetText).join('')}endsolid box\n`;
+
+function stlBinary() {
+  const view = new DataView(new ArrayBuffer(84 + 50 * TRIANGLES.length));
+  view.setUint32(80, TRIANGLES.length, true);
+  TRIANGLES.forEach((t, n) => {
+    t.forEach((i, k) => {
+      VERTICES[i].forEach((x, axis) => view.setFloat32(84 + 50 * n + 12 * (k + 1) + 4 * axis, x, true));
+    });
+  });
+  return Buffer.from(view.buffer);
+}
+
 const CASES = {
   'a box with materials': { 'thing.obj': read('faces.obj'), 'faces.mtl': read('faces.mtl') },
   'all forms of OBJ': { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE },
@@ -164,6 +194,10 @@ const CASES = {
   'PLY, little endian': { 'thing.ply': plyBinary(true) },
   'PLY, little endian, doubles': { 'thing.ply': plyBinary(true, 'double') },
   'PLY, big endian': { 'thing.ply': plyBinary(false) },
+  'triangle strips of PLY': { 'thing.ply': STRIPS },
+  'STL as text': { 'thing.stl': stlText() },
+  'STL, binary': { 'thing.stl': stlBinary() },
+  'an OBJ without its library': { 'thing.obj': 'mtllib none.mtl\nusemtl none\n' + prism(5) },
 };
 
 let cuvette;
@@ -202,28 +236,28 @@ for (const [what, files] of Object.entries(CASES))
 test('other formats, missing files and bad lines are errors with a remedy', async () => {
   const refused = (files, message) => assert.rejects(film(files), message);
   await refused(
-    { 'thing.stl': 'solid' },
-    /thing\.stl: a browser reads meshes from \.obj and \.ply files only; convert/,
+    { 'thing.glb': 'glTF' },
+    /thing\.glb: a browser reads meshes from \.obj, \.ply and \.stl files only; convert/,
   );
-  await refused({ 'thing.obj': 'mtllib none.mtl\nv 0 0 0\n' }, /none\.mtl: .*No such file/);
-  await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj: line 2: the corner '2' of a face is invalid/);
-  await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj: line 1: a vertex has fewer than three numbers/);
-  await refused({ 'thing.obj': 'v 0 O 0\n' }, /line 1: a vertex has a word that is not a finite number/);
-  await refused({ 'thing.obj': 'vn 0 1 nan\n' }, /line 1: a normal has a word that is not a finite number/);
-  await refused({ 'thing.obj': 'vn 0 1\n' }, /line 1: a normal has fewer than three numbers/);
+  await refused({ 'thing.obj': 'v 0 0 0\nf 1 2 3\n' }, /thing\.obj:2: a face refers to vertex 2, but the file has 1/);
+  await refused({ 'thing.obj': 'v 0 0\n' }, /thing\.obj:1: a vertex has fewer than three numbers/);
+  await refused({ 'thing.obj': 'v 0 O 0\n' }, /thing\.obj:1: a vertex has a word that is not a finite number.*: 'O'/);
+  await refused({ 'thing.obj': 'vn 0 1 nan\n' }, /thing\.obj:1: a normal has a word that is not a finite number/);
+  await refused({ 'thing.obj': 'vn 0 1\n' }, /thing\.obj:1: a normal has fewer than three numbers/);
   await refused({ 'thing.obj': 'v 0 0 0\n' }, /thing\.obj: the file has no triangles/);
   await refused({ 'thing.obj': '' }, /thing\.obj: .*empty/);
   await refused(
     { 'thing.ply': 'ply\nformat ascii 1.0\nelement vertex 3\n' },
-    /thing\.ply: line 3: the header has no end/,
+    /thing\.ply:4: the header has no end/,
   );
 });
 
-/* 64 bytes of memory for a vertex of one byte: 2^24 vertices fill half of the module's 2 GiB, and one more doubles
- * them. A module of its own, because memory never shrinks. */
+/* A list makes vertices of four bytes take 64 in memory: 2^24 vertices fill half of the module's 2 GiB, and one more
+ * doubles them. A module of its own, because memory never shrinks. */
 test('a PLY file that does not fit into memory is not called truncated', async () => {
   const count = (1 << 24) + 1;
-  const header = `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\nproperty uchar a\nend_header\n`;
+  const properties = ['x', 'y', 'z', 'a'].map((name) => `property ${name === 'a' ? 'list uchar ' : ''}uchar ${name}\n`).join('');
+  const header = `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\n${properties}end_header\n`;
   const own = await cuvetteOf('simd128');
   const read = async (bytes) => {
     const thing = own.Scene.read(scene('thing.ply'), { files: { 'thing.ply': bytes } });
@@ -233,7 +267,7 @@ test('a PLY file that does not fit into memory is not called truncated', async (
       thing.destroy();
     }
   };
-  await assert.rejects(read(Buffer.concat([bytesOf(header), Buffer.alloc(count)])), /out of memory/);
+  await assert.rejects(read(Buffer.concat([bytesOf(header), Buffer.alloc(4 * count)])), /out of memory/);
   await assert.rejects(read(bytesOf(header)), /the file ends within vertex 1 of 16777217/);
 });
 
@@ -268,6 +302,9 @@ test('damaged files never end the module', async () => {
     ['thing.obj', prism(9, true)],
     ['thing.ply', plyText()],
     ['thing.ply', plyBinary(true)],
+    ['thing.ply', STRIPS],
+    ['thing.stl', stlText()],
+    ['thing.stl', stlBinary()],
   ])
     for (let i = 0; i < 150; i++) {
       let bytes = Buffer.from(source);
@@ -282,7 +319,7 @@ test('damaged files never end the module', async () => {
         ]);
       }
       const files = { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE, [file]: bytes };
-      if (file === 'thing.ply') delete files['thing.obj'];
+      if (/ply|stl/.test(file)) delete files['thing.obj'];
       try {
         const name = file === 'thing.mtl' ? 'thing.obj' : file;
         const thing = cuvette.Scene.read(scene(name), { files });

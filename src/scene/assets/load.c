@@ -211,7 +211,7 @@ static status make_face_materials(const mesh_import *imported, const char *root,
         return out_of_memory(why);
     status code = read_face_materials(imported, root, list, why);
     if (code == STATUS_OK)
-        code = face_materials_of(list, count, out, why);
+        code = face_materials_of(list, count, imported->note ? imported->note : "", out, why);
     else
         for (int i = 0; i < count; i++)
             texture_release(list[i].img);

@@ -1,15 +1,15 @@
 /* Triangle meshes from files: OBJ with MTL, PLY, STL, glTF 2.0 and glb, by file name extension. A separate process
- * (cuvette-import, based on assimp) reads the file with limits on memory and time, so that no file can crash the
- * caller; its output is validated. Thread safe. Node hierarchies are flattened, polygons triangulated, equal vertices
- * merged, points and lines dropped. Coordinates are the file's own floats unless a node transforms them. Normals are
- * the file's or none; facet normals of STL are ignored. Every file that the mesh refers to (MTL, buffers, images) must
- * exist. Vertex colours, lights, cameras, animation and the metalness of glTF are ignored. Ownership: the import is the
- * caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the file and the reason; STATUS_FAILURE if the
- * importer cannot be started, or memory runs out. */
+ * (cuvette-import) reads the file with limits on memory and time, so that no file can crash the caller; its output is
+ * validated. Thread safe. Node hierarchies are flattened, polygons triangulated, equal vertices merged, points and
+ * lines dropped. Coordinates are the file's numbers, as doubles, unless a node transforms them. Normals are the file's
+ * or none; facet normals of STL are ignored. Material libraries and images that do not exist are a note of the import;
+ * buffers must exist. Vertex colours, lights, cameras, animation and the metalness of glTF are ignored. Ownership: the
+ * import is the caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the file and the reason;
+ * STATUS_FAILURE if the importer cannot be started, or memory runs out. */
 #pragma once
 
 #include "scene/assets/mesh_stream.h"
 
-/* Reads a mesh file; limits may be NULL. Images of textures are not opened, but must exist: their paths are absolute,
- * or relative to the mesh file. */
+/* Reads a mesh file; limits may be NULL. Images of textures are not opened: their paths are absolute, or relative to
+ * the mesh file. */
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why);

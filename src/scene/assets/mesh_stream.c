@@ -4,6 +4,7 @@
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "import/mesh_wire.h"
 #include "scene/model/solids.h"
 
@@ -14,6 +15,8 @@
 #include <sys/stat.h>
 
 _Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
+_Static_assert((int)MESH_WIRE_SLOTS_MAX == (int)MESH_SLOTS_MAX && (int)MESH_WIRE_FAR == (int)MESH_FAR,
+               "the same limits");
 _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays without padding");
 
 #define COLOR_MAX 1e6 /* maximum of a colour component, an exponent or an index; larger values are errors in the file */
@@ -41,6 +44,7 @@ void mesh_import_destroy(mesh_import *imported)
         free(imported->materials[i].texture);
     }
     free(imported->materials);
+    free(imported->note);
     mesh_release(imported->mesh);
     free(imported);
 }
@@ -62,7 +66,7 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
     TRY(source->read(source->context, header, sizeof *header, why));
     if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION)
         return damaged(why, "it does not begin with the header of this version");
-    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS) || header->reserved)
+    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS))
         return damaged(why, "unknown flags");
     if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX)
         return damaged(why, "the number of materials is out of range");
@@ -178,7 +182,7 @@ static status read_material(const mesh_source *source, imported_material *m, dia
     return check_numbers(m, why);
 }
 
-static status read_materials(const mesh_source *source, mesh_import *into, diagnostic *why)
+static status read_materials(const mesh_source *source, mesh_import *into, uint32_t note_length, diagnostic *why)
 {
     for (int i = 0; i < into->material_count; i++) {
         imported_material *m = &into->materials[i];
@@ -186,6 +190,7 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
         if (m->name && !(into->mesh->slot_names[i] = strdup(m->name)))
             return no_memory(why);
     }
+    TRY(read_text(source, note_length, &into->note, why));
     char end[sizeof MESH_WIRE_END - 1];
     TRY(source->read(source->context, end, sizeof end, why));
     return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why)
@@ -203,7 +208,7 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     if (!into->materials)
         return no_memory(why);
     TRY(read_arrays(source, into->mesh, why));
-    TRY(read_materials(source, into, why));
+    TRY(read_materials(source, into, header.note_length, why));
     into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
     return mesh_finish(into->mesh, why);
 }
@@ -376,17 +381,38 @@ static void respell(char *name)
     *to = 0;
 }
 
+static bool exists(const char *path)
+{
+    struct stat about;
+    return path && stat(path, &about) == 0;
+}
+
 static bool is_file(const char *path)
 {
     struct stat about;
-    return path && stat(path, &about) == 0 && S_ISREG(about.st_mode);
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+/* Adds to the note of the import that the material is without its image. */
+static status note_missing(mesh_import *imported, imported_material *m, diagnostic *why)
+{
+    char *note = text_format("%s%sthe image '%.200s' of material '%.100s' does not exist: the material is without it",
+                             imported->note ? imported->note : "", imported->note ? "; " : "", m->texture,
+                             m->name ? m->name : "");
+    if (!note)
+        return out_of_memory(why);
+    free(imported->note);
+    imported->note = note;
+    free(m->texture);
+    m->texture = NULL;
+    return STATUS_OK;
 }
 
 /* Finds the image of a material; the original spelling is tried first. */
-static status resolve(const char *path, imported_material *m, diagnostic *why)
+static status resolve(const char *path, mesh_import *imported, imported_material *m, diagnostic *why)
 {
     char *found = file_next_to(path, m->texture);
-    if (!is_file(found)) {
+    if (!exists(found)) {
         char *respelt = strdup(m->texture);
         if (respelt) {
             respell(respelt);
@@ -397,10 +423,14 @@ static status resolve(const char *path, imported_material *m, diagnostic *why)
     }
     if (!found)
         return out_of_memory(why);
+    if (!exists(found)) {
+        free(found);
+        return note_missing(imported, m, why);
+    }
     if (!is_file(found)) {
         diagnose(why, STATUS_BAD_INPUT,
                  "put the image where the mesh file expects it, or remove the line that names it",
-                 "the image '%.200s' of material '%.100s' does not exist", m->texture, m->name ? m->name : "");
+                 "the image '%.200s' of material '%.100s' is not a regular file", m->texture, m->name ? m->name : "");
         free(found);
         return STATUS_BAD_INPUT;
     }
@@ -413,6 +443,6 @@ status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *w
 {
     status code = STATUS_OK;
     for (int i = 0; i < imported->material_count && code == STATUS_OK; i++)
-        code = imported->materials[i].texture ? resolve(path, &imported->materials[i], why) : STATUS_OK;
+        code = imported->materials[i].texture ? resolve(path, imported, &imported->materials[i], why) : STATUS_OK;
     return code;
 }

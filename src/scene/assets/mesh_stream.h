@@ -42,6 +42,7 @@ typedef struct mesh_import {
     struct mesh *mesh;  /* finished; triangle t has the material materials[slots[t]] */
     int material_count; /* = mesh->slot_count; the mesh's slots have the names of the materials */
     imported_material *materials;
+    char *note; /* what the file names or has, and the mesh lacks; NULL: nothing */
 } mesh_import;
 
 /* The source of the bytes. read fills all `size` bytes or fails with a diagnostic; end fails if more bytes follow. */
@@ -65,5 +66,6 @@ status mesh_points_parse(const char *name, const char *text, size_t size, mesh_i
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
 
 /* Turns the image names of materials into paths that can be opened: absolute, or relative to the mesh file at `path`.
- * The images are not opened. STATUS_BAD_INPUT if one does not exist. */
+ * The images are not opened. A material whose image does not exist loses it, with a note. STATUS_BAD_INPUT if one is
+ * not a regular file. */
 status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *why);

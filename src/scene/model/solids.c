@@ -3,6 +3,7 @@
 #include "geometry/shapes/shape.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@
 struct face_materials {
     atomic_int references;
     int count;
+    char note[300];
     face_material mat[];
 };
 
@@ -31,9 +33,12 @@ static face_materials *allocate(int count)
     return materials;
 }
 
-status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why)
+status face_materials_of(const face_material *list, int count, const char *note, const face_materials **out,
+                         diagnostic *why)
 {
     face_materials *materials = allocate(count);
+    if (materials)
+        snprintf(materials->note, sizeof materials->note, "%s", note);
     for (int i = 0; i < count; i++)
         if (materials)
             materials->mat[i] = list[i];
@@ -56,6 +61,11 @@ void face_materials_release(const face_materials *materials)
     for (int i = 0; i < materials->count; i++)
         texture_release(materials->mat[i].img);
     free(mutable_count(materials));
+}
+
+const char *face_materials_note(const face_materials *materials)
+{
+    return materials ? materials->note : "";
 }
 
 int face_materials_count(const face_materials *materials)

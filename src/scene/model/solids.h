@@ -67,10 +67,13 @@ typedef struct face_material {
 /* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */
 typedef struct face_materials face_materials;
 
-/* Copies a list of materials, and takes over its references to images; after an error it has released them.
- * STATUS_FAILURE if memory runs out. */
-status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
-/* NULL is allowed in these three functions. */
+/* Copies a list of materials and a note on what the mesh file has or names and was not read ("": nothing; it may be
+ * shortened), and takes over the list's references to images; after an error it has released them. STATUS_FAILURE if
+ * memory runs out. */
+status face_materials_of(const face_material *list, int count, const char *note, const face_materials **out,
+                         diagnostic *why);
+/* NULL is allowed in these four functions. */
+const char *face_materials_note(const face_materials *l);
 void face_materials_retain(const face_materials *l);
 void face_materials_release(const face_materials *l);
 int face_materials_count(const face_materials *l); /* 0 for NULL */

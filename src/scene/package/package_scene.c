@@ -94,7 +94,7 @@ static status get_list(pack_reader *from, face_material *list, int count, const 
             return code;
         }
     }
-    return face_materials_of(list, count, out, why);
+    return face_materials_of(list, count, "", out, why);
 }
 
 static status get_face_materials(pack_reader *from, const face_materials **out, diagnostic *why)
