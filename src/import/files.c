@@ -1,5 +1,6 @@
-/* Which files an import may open, and which reader reads a file. */
+/* Files and their texts: which an import may open, and how a text is divided into lines, words and numbers. */
 #include "base/file.h"
+#include "base/number.h"
 #include "import/plain.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -13,6 +14,8 @@ enum {
     MAPPED_MIN = 1 << 20, /* bytes; smaller files are read */
     UNKNOWN_MAX = 1 << 16 /* bytes of a file of /proc, whose size is 0 */
 };
+
+/* --- files --- */
 
 file_kind file_kind_of(const char *path)
 {
@@ -131,28 +134,81 @@ status files_open_mesh(const request *req, int *fd, diagnostic *why)
     return STATUS_OK;
 }
 
-static status load(const request *req, file_text *text, diagnostic *why)
+/* --- texts --- */
+
+static bool is_line_end(char c)
 {
-    int fd;
-    TRY(files_open_mesh(req, &fd, why));
-    const int error = files_read(fd, text);
-    if (error == ENOMEM)
-        return no_memory_for(req, why);
-    if (error)
-        return system_error(why, STATUS_BAD_INPUT, req->path, "cannot read", error, "give a readable mesh file");
-    if (text->size > 0)
-        return STATUS_OK;
-    files_release(text);
-    return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty");
+    return c == '\n' || c == '\r';
 }
 
-status plain_read(const request *req, flat_mesh *flat, diagnostic *why)
+static bool is_blank(char c)
 {
-    file_text text;
-    TRY(load(req, &text, why));
-    const status code = req->kind == FILE_OBJ   ? obj_read(req, text.bytes, text.size, flat, why)
-                        : req->kind == FILE_PLY ? ply_read(req, text.bytes, text.size, flat, why)
-                                                : stl_read(req, text.bytes, text.size, flat, why);
-    files_release(&text);
-    return code;
+    return c == ' ' || c == '\t' || c == '\f' || c == '\v';
+}
+
+size_t text_begin(const char *text, size_t size)
+{
+    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
+lines lines_of(const char *text, size_t size)
+{
+    return (lines){.at = text + text_begin(text, size), .end = text + size, .line = 1};
+}
+
+bool lines_next(lines *l)
+{
+    while (l->at < l->end && !is_line_end(*l->at))
+        l->at++;
+    if (l->at >= l->end)
+        return false;
+    l->at += l->at[0] == '\r' && l->at[1] == '\n' ? 2 : 1;
+    l->line++;
+    return l->at < l->end;
+}
+
+bool lines_word(lines *l, const char **word, size_t *length)
+{
+    while (l->at < l->end && is_blank(*l->at))
+        l->at++;
+    const char *p = l->at;
+    while (p < l->end && !is_blank(*p) && !is_line_end(*p))
+        p++;
+    *word = l->at;
+    *length = (size_t)(p - l->at);
+    l->at = p;
+    return *length > 0;
+}
+
+bool lines_any_word(lines *l, const char **word, size_t *length)
+{
+    while (!lines_word(l, word, length))
+        if (!lines_next(l))
+            return false;
+    return true;
+}
+
+bool lines_number(const char *word, size_t length, double *number)
+{
+    const char *at = word;
+    return number_scan(&at, number) && at == word + length;
+}
+
+bool lines_is(const char *word, size_t length, const char *text)
+{
+    return strlen(text) == length && strncasecmp(word, text, length) == 0;
+}
+
+size_t lines_rest(const lines *l, const char **text)
+{
+    const char *from = l->at;
+    while (from < l->end && is_blank(*from))
+        from++;
+    const char *to = from;
+    while (to < l->end && !is_line_end(*to))
+        to++;
+    while (to > from && is_blank(to[-1]))
+        to--;
+    *text = from;
+    return (size_t)(to - from);
 }

@@ -168,7 +168,8 @@ static status read_libraries(obj_file *f)
 {
     const obj_event *last = NULL;
     for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++)
-        for (const obj_event *e = o->events; e < o->events + o->event_count; e++) {
+        for (size_t i = 0; i < o->event_count; i++) {
+            const obj_event *e = &o->events[i];
             if (!e->library || (last && last->length == e->length && memcmp(last->names, e->names, e->length) == 0))
                 continue;
             locate(f, o, e->line);

@@ -9,6 +9,11 @@
 
 enum { POLYGON_MAX = 65536 /* corners */ };
 
+/* ---- plain.c ---- */
+
+/* Reads the OBJ, PLY or STL file of the request into an empty mesh. */
+status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
+
 /* ---- files.c ---- */
 
 /* The format by the ending of the name; upper and lower case are the same. */
@@ -31,8 +36,27 @@ typedef struct file_text {
 int files_read(int fd, file_text *text);
 void files_release(file_text *text);
 
-/* Reads the OBJ, PLY or STL file of the request into an empty mesh. */
-status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
+/* Lines and words of a text, after whose end \n follows. */
+typedef struct lines {
+    const char *at, *end; /* the rest of the text */
+    long line;            /* from 1 */
+} lines;
+
+/* The size of a byte order mark at the beginning of the text; 0: none. */
+size_t text_begin(const char *text, size_t size);
+lines lines_of(const char *text, size_t size);
+/* Goes to the next line; false at the end of the text. Line ends are \n, \r\n and \r. */
+bool lines_next(lines *l);
+/* The next word of this line; false: none. */
+bool lines_word(lines *l, const char **word, size_t *length);
+/* The next word of this line or of a following one; false at the end of the text. */
+bool lines_any_word(lines *l, const char **word, size_t *length);
+/* The rest of this line, without blanks at both ends. */
+size_t lines_rest(const lines *l, const char **text);
+/* Whether the word equals the text, in upper or lower case. */
+bool lines_is(const char *word, size_t length, const char *text);
+/* Whether the word is a decimal number, finite as a double. */
+bool lines_number(const char *word, size_t length, double *number);
 
 /* ---- the readers. text: size bytes, then \n and 0. `why` already has the path. ---- */
 
@@ -77,26 +101,3 @@ typedef struct polygon {
 status polygon_append(const request *req, polygon *p, const uint32_t *indices, size_t count, uint8_t slot,
                       flat_mesh *flat, diagnostic *why);
 void polygon_release(polygon *p);
-
-/* ---- lines.c: lines and words of a text that ends with \n after its end ---- */
-
-typedef struct lines {
-    const char *at, *end; /* the rest of the text */
-    long line;            /* from 1 */
-} lines;
-
-/* The size of a byte order mark at the beginning of the text; 0: none. */
-size_t text_begin(const char *text, size_t size);
-lines lines_of(const char *text, size_t size);
-/* Goes to the next line; false at the end of the text. Line ends are \n, \r\n and \r. */
-bool lines_next(lines *l);
-/* The next word of this line; false: none. */
-bool lines_word(lines *l, const char **word, size_t *length);
-/* The next word of this line or of a following one; false at the end of the text. */
-bool lines_any_word(lines *l, const char **word, size_t *length);
-/* The rest of this line, without blanks at both ends. */
-size_t lines_rest(const lines *l, const char **text);
-/* Whether the word equals the text, in upper or lower case. */
-bool lines_is(const char *word, size_t length, const char *text);
-/* Whether the word is a decimal number, finite as a double. */
-bool lines_number(const char *word, size_t length, double *number);

@@ -393,6 +393,15 @@ check "a missing folder is refused" matches "$code $(<err)" "^[12] cuvette: .*no
 run mesh torus.obj
 check "mesh reads a file" is "$code $(grep -E "^(triangles|closed)" out | tr -s " " | tr "\n" " ")" \
     "0 triangles 40 closed yes "
+printf 'mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 .5\nusemtl a\nf 1 2 3\n' >lacking.obj
+run mesh lacking.obj
+check "mesh notes a library that does not exist" is "$code $(<err)" \
+    "0 cuvette: note: the material library 'no.mtl' does not exist: its materials are grey"
+printf 'meshes: {m: {file: lacking.obj}}\nlights: {l: {position: [1, 1, -1]}}\nsolids: {s: {shape: mesh, mesh: m}}\n' \
+    >lacking.yaml
+run render lacking.yaml -o lacking.png --set render.width=8 --set render.height=6
+check "render notes it, too" grep -q \
+    "^cuvette: note: m.file: the material library 'no.mtl' does not exist: its materials are grey$" err
 run mesh nothing.obj
 check "a missing mesh file" matches "$code $(<err)" "^2 cuvette: .*nothing.obj.*cannot open"
 run mesh

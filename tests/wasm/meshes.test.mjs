@@ -256,7 +256,7 @@ test('other formats, missing files and bad lines are errors with a remedy', asyn
  * doubles them. A module of its own, because memory never shrinks. */
 test('a PLY file that does not fit into memory is not called truncated', async () => {
   const count = (1 << 24) + 1;
-  const properties = ['x', 'y', 'z', 'a'].map((name) => `property ${name === 'a' ? 'list uchar ' : ''}uchar ${name}\n`).join('');
+  const properties = ['uchar x', 'uchar y', 'uchar z', 'list uchar uchar a'].map((p) => `property ${p}\n`).join('');
   const header = `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\n${properties}end_header\n`;
   const own = await cuvetteOf('simd128');
   const read = async (bytes) => {

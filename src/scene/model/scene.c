@@ -135,8 +135,14 @@ status scene_file_error(const scene *s, const char *what, long line, long column
         diagnostic_locate(why, bad->file, bad->line, bad->column);
         return diagnose(why, code, bad->remedy, "%s: %s", what, bad->what);
     }
+    char place[64] = "";
+    if (bad->file[0] && bad->line > 0 && bad->column > 0)
+        snprintf(place, sizeof place, ":%ld:%ld", bad->line, bad->column);
+    else if (bad->file[0] && bad->line > 0)
+        snprintf(place, sizeof place, ":%ld", bad->line);
     diagnostic_locate(why, s->path, line, column);
-    return diagnose(why, code, bad->remedy, "%s: %s%s%s", what, bad->file, bad->file[0] ? ": " : "", bad->what);
+    return diagnose(why, code, bad->remedy, "%s: %s%s%s%s", what, bad->file, place, bad->file[0] ? ": " : "",
+                    bad->what);
 }
 
 /* --- objects by name --- */
