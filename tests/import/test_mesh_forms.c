@@ -265,6 +265,7 @@ static void stl_texts_are_read_in_every_form(void **state)
     static const char *const texts[] = {
         "solid a\n" FIRST SECOND "endsolid a\n",
         "solid\n" FIRST SECOND "endsolid",
+        "solid\n" FIRST FACET("-0 0 -0.0", "1 1 0", "-0 1 0") "endsolid\n", /* -0 and 0 are one vertex */
         " \n\tsolid a b c\n" FIRST SECOND "endsolid a b c\n",
         "\xef\xbb\xbfsolid a\n" FIRST SECOND "endsolid a\n",
         "SOLID a\n FACET NORMAL 0 0 1\n OUTER LOOP\n VERTEX 0 0 0\n VERTEX 1 0 0\n VERTEX 1 1 0\n ENDLOOP\n ENDFACET\n"

@@ -15,6 +15,16 @@
 #define THREE "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\n"
 
+static void equal_vertices_are_joined(void **state)
+{
+    (void)state;
+    mesh_import *got = read_text("join.obj", SQUARE "v 1 1 0.5\nv -0 -0.0 -0\nf 1 2 3\nf 6 5 4\n");
+    assert_int_equal(got->mesh->vertex_count, 4);
+    assert_int_equal(got->mesh->triangles[1].corner[0], got->mesh->triangles[0].corner[0]);
+    assert_int_equal(got->mesh->triangles[1].corner[1], got->mesh->triangles[0].corner[2]);
+    mesh_import_destroy(got);
+}
+
 /* Each is one triangle, (0 0 0) (1 0 0) (0 1 0). */
 static void a_triangle_is_read_in_every_form(void **state)
 {
@@ -380,6 +390,24 @@ static void large_files_are_read_as_written(void **state)
     }
 }
 
+/* Two of three line ends are continued, so that one of these three files would be divided at such a line end. */
+static void files_are_not_divided_within_a_continued_line(void **state)
+{
+    (void)state;
+    enum { COUNT = 200000 };
+    static const char *const beginnings[] = {"", "#234\n", "#2345678\n"};
+    for (int i = 0; i < 3; i++) {
+        bytes b = {NULL, 0, 0};
+        add_text(&b, beginnings[i]);
+        add_text(&b, THREE);
+        for (int k = 0; k < COUNT; k++)
+            add_text(&b, "f 1 \\\n2 \\\n3\n");
+        mesh_import *got = read_bytes("continued.obj", b);
+        assert_int_equal(got->mesh->triangle_count, COUNT);
+        mesh_import_destroy(got);
+    }
+}
+
 /* The output of the import program with these options; *code: its exit status. */
 static bytes import(const char *options, const char *name, int *code)
 {
@@ -451,6 +479,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_triangle_is_read_in_every_form),
+        cmocka_unit_test(equal_vertices_are_joined),
         cmocka_unit_test(numbers_are_the_nearest_doubles),
         cmocka_unit_test(what_is_wrong_is_refused_with_its_line),
         cmocka_unit_test(concave_polygons_are_divided_within_themselves),
@@ -459,6 +488,7 @@ int main(void)
         cmocka_unit_test(statements_of_a_library_are_read_or_ignored),
         cmocka_unit_test(missing_libraries_and_images_are_notes),
         cmocka_unit_test(large_files_are_read_as_written),
+        cmocka_unit_test(files_are_not_divided_within_a_continued_line),
         cmocka_unit_test(processors_do_not_matter),
         cmocka_unit_test(limits_hold),
     };
