@@ -57,8 +57,9 @@ static void add_crossing(void *context, const mesh_hit *hit)
 
 /* Adds the segments inside one copy; false unless the line crosses front and back faces in turn. The line's origin must
  * be in front of the mesh. */
-static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, line_spans *out)
+static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, isa level, line_spans *out)
 {
+    static const hierarchy_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(hierarchy_kernels);
     const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, instance_set_origin(p, copy)));
     const vec3 d = mat3_apply_transposed(p->rotation, l->direction), s = p->scale;
     const mesh_ray ray = {.origin = vec3_make(o.x / s.x, o.y / s.y, o.z / s.z),
@@ -67,7 +68,7 @@ static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, 
                           .skip = TRIANGLE_NONE,
                           .facing = FACING_ANY};
     mesh_crossings c = {.count = 0};
-    ISA_BASE_OF(hierarchy_kernels).all(p->tree, &ray, add_crossing, &c);
+    kernels[level]->all(p->tree, &ray, add_crossing, &c);
     if (c.count > 2 * SPANS_MAX || c.count % 2 || out->count + c.count / 2 > SPANS_MAX)
         return false;
     for (int i = 0; i < c.count; i++)
@@ -91,24 +92,24 @@ static void sort_spans(line_spans *s)
 
 enum { COPIES_FEW = 64 };
 
-static bool through_mesh(const instanced_mesh *p, const line *l, line_spans *out)
+static bool through_mesh(const instanced_mesh *p, const line *l, isa level, line_spans *out)
 {
     const uint64_t copies = (uint64_t)p->copies[0] * p->copies[1] * p->copies[2];
     bool known = p->closed && copies <= COPIES_FEW;
     for (uint32_t i = 0; known && i < copies; i++)
-        known = through_copy(p, i, l, out);
+        known = through_copy(p, i, l, level, out);
     sort_spans(out);
     return known;
 }
 
 /* Intersects a line with a solid. False if undecidable: an open mesh, more than SPANS_MAX segments, or a line through
  * an edge of a mesh, which counts as no crossing or two. */
-static bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out)
+static bool line_through(const scene_geometry *a, const region *b, const line *l, isa level, line_spans *out)
 {
     out->count = 0;
     const primitive *p = &a->primitives[b->outside];
     if (!p->rule)
-        return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, out);
+        return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, level, out);
     interval outer[CHORDS_MAX], inner[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
     const int count = primitive_chords(p, l->origin, l->direction, outer);
     if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, inner) == 0)
@@ -232,18 +233,29 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
     return found ? best : 0.0;
 }
 
+/* The segments inside both solids; false if a solid has none, or they are undecidable. A mesh comes last, because it
+ * takes longest. */
+static bool meet_both(const pair *p, const line *l, line_spans *one, line_spans *two)
+{
+    const scene_geometry *g = p->input->probe->geometry;
+    const isa level = p->input->level;
+    const bool mesh_first = !g->primitives[p->a->of->outside].rule;
+    const region *early = mesh_first ? p->b->of : p->a->of, *late = mesh_first ? p->a->of : p->b->of;
+    line_spans *early_spans = mesh_first ? two : one, *late_spans = mesh_first ? one : two;
+    return line_through(g, early, l, level, early_spans) && early_spans->count > 0 &&
+           line_through(g, late, l, level, late_spans) && late_spans->count > 0;
+}
+
 /* Examines all lines of an axis; true if the solids overlap. */
 static bool examine_along(const pair *p, int axis)
 {
-    const scene_geometry *a = p->input->probe->geometry;
     for (int i = 0; i < p->lattice && !cancel_asked(); i++)
         for (int j = 0; j < p->lattice; j++) {
             const line l = lattice_line(p, axis, i, j);
             line_spans one, two;
             float *gap = &p->gap[i * p->lattice + j];
             *gap = 0.0F;
-            if (!line_through(a, p->a->of, &l, &one) || one.count == 0 || !line_through(a, p->b->of, &l, &two) ||
-                two.count == 0)
+            if (!meet_both(p, &l, &one, &two))
                 continue;
             if (p->overlaps && spans_overlap(p, &l, &one, &two))
                 return true;
