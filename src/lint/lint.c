@@ -77,7 +77,7 @@ static bool lint_camera(const lint_input *input)
 
 /* --- the scene --- */
 
-enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
+enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800, PROBE_DEPTH = 32 };
 #define PROBE_RAYS 300000.0 /* of all images together: about ten milliseconds */
 #define MESH_RAY 10.0       /* cost of a ray in a scene with triangles, relative to a scene without */
 
@@ -125,7 +125,9 @@ static scene small_view(const scene *s, bool by_chance)
 {
     scene view = *s;
     render_settings *r = &view.render;
-    shrink(r, has_meshes(s) ? PROBE_PIXELS_MESHES : PROBE_PIXELS);
+    /* lint_depth keeps an image for each depth: with many, smaller ones. */
+    const double depths = fmin(fmax((double)r->depth, PROBE_DEPTH), DEPTH_TREE_MAX);
+    shrink(r, (has_meshes(s) ? PROBE_PIXELS_MESHES : PROBE_PIXELS) * PROBE_DEPTH / depths);
     r->samples = 1;
     r->spectrum = SPECTRUM_RGB;
     r->polarisation = 0;

@@ -399,12 +399,12 @@ static void missing_and_too_large_scripts_are_refused(void **state)
     assert_string_equal(why.file, FOLDER "no-such.yaml");
     assert_null(s);
     assert_int_equal(script_read_below("tests", NULL, &s, NULL), STATUS_BAD_INPUT);
-    const size_t size = (64 << 20) + 1;
+    const size_t size = (256 << 20) + 1;
     char *huge = malloc(size);
     assert_non_null(huge);
     memset(huge, '#', size);
     assert_int_equal(script_read_text("huge.yaml", huge, size, &s, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "larger than 64 MiB"));
+    assert_non_null(strstr(why.what, "larger than 256 MiB"));
     free(huge);
 }
 
