@@ -53,9 +53,12 @@ random_scenes() {
         END { n = sorted(list, v); if (n) printf "%66s %8.3f   (%d scenes, worst %.3f)\n", "random scenes, median",
             median(list), n, v[worst == "low" ? 1 : n] }'
 }
-# spheres SEED SOLIDS LIGHTS: the path of a random scene (random_scene.awk); seed 1 is the one that has a name
+# spheres SEED SOLIDS LIGHTS: the path of a random scene (random_scene.awk); seed 1 is the one that has a name. Over
+# 10^5 equal spheres are a cloud, because a solid that is written by itself takes ten times the memory.
 spheres() {
-    local scene=$work/scene-$1-$2-$3.yaml
-    [ -s "$scene" ] || awk -v seed="$1" -v solids="$2" -v lights="$3" -f "$here/random_scene.awk" >"$scene"
+    local scene=$work/scene-$1-$2-$3.yaml cloud=
+    (($1 != 1 || $2 <= 100000)) || cloud=${scene%.yaml}.xyz
+    [ -s "$scene" ] || awk -v seed="$1" -v solids="$2" -v lights="$3" -v cloud="$cloud" \
+        -f "$here/random_scene.awk" >"$scene"
     echo "$scene"
 }

@@ -1,14 +1,15 @@
 # shellcheck shell=bash
 # growth: the table of plots/growth*.gp: time and memory by solids, lights, triangles, pixels, depth (8 minutes)
 # What no study can sweep: solids and lights, and the memory of fresh processes (in a study, a process has the memory of
-# earlier cells as well). SIZE=400x300, SOLIDS="1 3 10 ... 100000", LIGHTS="1 4 ... 1000" (among 64 solids),
-# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 6400x4800", DEPTHS="0 ... 14".
+# earlier cells as well). SIZE=400x300, SOLIDS="1 3 10 ... 1000000", LIGHTS="1 4 ... 1000" (among 64 solids),
+# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 16384x12288", DEPTHS="0 ... 14".
 # Scenes: random_scene.awk with seed 1, soup.yaml, rod.yaml; one thread; depth 4, triangles 0; paths: 4 a pixel. A round
 # renders every scene once. Times are CPU times of tracing, without reading the scene and building its hierarchy.
 size=${SIZE:-400x300}
-solids=${SOLIDS:-1 3 10 30 64 100 300 1000 3000 10000 30000 100000} lights=${LIGHTS:-1 4 16 64 256 1000}
+solids=${SOLIDS:-1 3 10 30 64 100 300 1000 3000 10000 30000 100000 300000 1000000}
+lights=${LIGHTS:-1 4 16 64 256 1000}
 triangles=${TRIANGLES:-1000 10000 100000 1000000 10000000} depths=${DEPTHS:-0 2 4 6 8 10 12 14}
-sizes=${SIZES:-100x75 200x150 400x300 800x600 1600x1200 3200x2400 6400x4800}
+sizes=${SIZES:-100x75 200x150 400x300 800x600 1600x1200 3200x2400 6400x4800 16384x12288}
 
 runs=()
 add() { runs+=("$*"); } # add SERIES N SCENE SIZE [SET...]
@@ -33,7 +34,10 @@ round() {
         read -r series n scene frame sets <<<"$run"
         # shellcheck disable=SC2086 # a list of words without blanks
         json=$("$ours" render "$scene" --json $(printf -- ' --set %s' render.threads=1 "render.width=${frame%x*}" \
-            "render.height=${frame#*x}" $sets))
+            "render.height=${frame#*x}" $sets) 2>"$work/err") || {
+            echo "$name: $series $n is left out: $(tail -n 1 "$work/err")" >&2 # a machine of little memory
+            continue
+        }
         echo "$series $n" "$(field cpu_s <<<"$json")" "$(field total <<<"$json")" "$(field camera <<<"$json")" \
             "$(field peak_rss_bytes <<<"$json")"
     done >>"$work/rows"
