@@ -19,7 +19,7 @@ set title "Spheres: CPU time of a ray, median and range"
 set ylabel "ns / ray"
 plot rays("solids") using 1:2:3:4 with yerrorlines lt 1 title "measured", \
      (at64) with lines lt 8 title "that of 64 spheres", 3*at64 with lines lt 7 title "three times that"
-set title "Spheres: memory of the process"
+set title "Spheres: memory of the process (over 10^5: a cloud)"
 set ylabel "MiB"
 plot memory("solids") using 1:($2/2**20):($3/2**20):($4/2**20) with yerrorlines lt 1 notitle
 set xlabel "lights"

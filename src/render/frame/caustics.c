@@ -175,9 +175,11 @@ static void spread_photons(caustics *c, int worker)
 
 static status finish_map(caustics *c, diagnostic *why)
 {
-    (void)why;
-    if (c->map && !stopped(c) && photon_map_finish(c->map))
-        c->frame_plan->photons = c->map;
+    if (!c->map || stopped(c))
+        return STATUS_OK;
+    if (!photon_map_finish(c->map))
+        return stopped(c) ? STATUS_OK : out_of_memory(why);
+    c->frame_plan->photons = c->map;
     return STATUS_OK;
 }
 

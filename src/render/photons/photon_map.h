@@ -59,8 +59,8 @@ typedef struct photon_limits {
  * time. */
 enum { PHOTON_BLOCK = 512, PHOTON_NEIGHBOURS = 48, PHOTON_WIDER = 2 };
 void photon_map_spread(photon_map *m, size_t first, const photon_limits *limits);
-/* Completes the map after the last photon_map_spread; false when cancelled. Merges photons that are much closer
- * together than their discs are wide. */
+/* Completes the map after the last photon_map_spread; false when cancelled or out of memory. Merges photons that are
+ * much closer together than their discs are wide. */
 bool photon_map_finish(photon_map *m);
 
 /* The number of photons, which photon_map_finish may reduce. */
