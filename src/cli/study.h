@@ -96,7 +96,7 @@ void study_instructions_end(const counted_run *run);
 void study_notes_print_file(const study *s);
 
 /* Prints the notes on the scenes of the cells, each once with the number of its cells. Overlaps, gaps, the camera and
- * the depth limit need traced rays: cells are examined for at most a second, and slimes are not simulated. */
+ * the depth limit need traced rays: up to twelve cells are examined, for at most a second; slimes are not simulated. */
 status study_notes_print_cells(const study *s, diagnostic *why);
 
 /* --- tables with aligned columns, for a terminal or a reader --- */

@@ -13,6 +13,8 @@
 #include <string.h>
 
 static const double trace_budget_s = 1.0;
+/* A note on a fifth of the cells is missed by 12 of them in one study of fifteen. */
+enum { TRACED_CELLS = 12 };
 
 /* A note, and the cells that have it; texts that differ only in numbers are one note. */
 typedef struct found_note {
@@ -208,12 +210,16 @@ static status trace_cells(collector *c, size_t *order, size_t *weights, size_t *
     }
     order_shuffle(1, 0, order, total);
     c->traced = true;
-    for (size_t i = 0; i < total && (i == 0 || clock_wall_s() - began_s < trace_budget_s); i++) {
+    size_t traced = 0;
+    for (size_t i = 0; i < total && traced < TRACED_CELLS; i++) {
         c->cell = order[i];
         c->weight = weights[c->cell];
+        if (c->weight == 0)
+            continue;
+        if (traced++ > 0 && clock_wall_s() - began_s > trace_budget_s)
+            break;
         *examined += c->weight;
-        if (c->weight)
-            TRY(trace_cell(c, level, why));
+        TRY(trace_cell(c, level, why));
     }
     return STATUS_OK;
 }
