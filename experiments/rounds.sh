@@ -18,16 +18,15 @@ failed() { # failed WHAT LOG
     exit 1
 }
 # field NAME < JSON: the first number with that name
-field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
+field() { sed -e "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/" -e 't found' -e d -e ':found' -e q; }
 note() { # note CONTESTANT VALUE...: a line of values, one a round
     local IFS=$'\t'
     printf '%s\n' "${*:2}" >>"$work/$1"
 }
 # traced CONTESTANT CLOCK PROGRAM SCENE [ARGUMENT...]: notes seconds and rays of a frame of $size
 traced() {
-    local json
-    json=$("$3" render "$4" --json --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${@:5}")
-    note "$1" "$(field "$2" <<<"$json")" "$(field total <<<"$json")"
+    "$3" render "$4" --json --set "render.width=${size%x*}" --set "render.height=${size#*x}" "${@:5}" >"$work/json"
+    note "$1" "$(field "$2" <"$work/json")" "$(field total <"$work/json")"
 }
 seconds() { # seconds COMMAND...: wall time of a whole process
     local from=$EPOCHREALTIME

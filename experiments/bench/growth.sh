@@ -29,17 +29,17 @@ prepare() {
     for n in $depths; do add depth "$n" "$here/scenes/rod.yaml" "$size" render.depth="$n"; done
 }
 round() {
-    local run series n scene frame sets json
+    local run series n scene frame sets
     for run in "${runs[@]}"; do
         read -r series n scene frame sets <<<"$run"
         # shellcheck disable=SC2086 # a list of words without blanks
-        json=$("$ours" render "$scene" --json $(printf -- ' --set %s' render.threads=1 "render.width=${frame%x*}" \
-            "render.height=${frame#*x}" $sets) 2>"$work/err") || {
+        "$ours" render "$scene" --json $(printf -- ' --set %s' render.threads=1 "render.width=${frame%x*}" \
+            "render.height=${frame#*x}" $sets) >"$work/json" 2>"$work/err" || {
             echo "$name: $series $n is left out: $(tail -n 1 "$work/err")" >&2 # a machine of little memory
             continue
         }
-        echo "$series $n" "$(field cpu_s <<<"$json")" "$(field total <<<"$json")" "$(field camera <<<"$json")" \
-            "$(field peak_rss_bytes <<<"$json")"
+        echo "$series $n" "$(field cpu_s <"$work/json")" "$(field total <"$work/json")" "$(field camera <"$work/json")" \
+            "$(field peak_rss_bytes <"$work/json")"
     done >>"$work/rows"
 }
 
