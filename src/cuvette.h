@@ -224,8 +224,8 @@ CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const c
                                                    const char *material, cuvette_diagnostic *why);
 
 /* Adds a mesh that is read or generated at its first use: set NAME.file to an OBJ, PLY, STL or glTF file, or
- * NAME.generate to "icosphere", "torus" and so on. To show it, add a solid of the shape "mesh" and set its parameter
- * `mesh` to this name. */
+ * NAME.generate to "icosphere", "torus" and so on. Files have right-handed axes, whose z changes its sign, unless
+ * NAME.handedness is "left". To show it, add a solid of the shape "mesh" and set its parameter `mesh` to this name. */
 CUVETTE_API cuvette_status cuvette_scene_add_mesh(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
 /* The caller's triangles, which are copied. At most one array of each pair of double and float is set; neither if the

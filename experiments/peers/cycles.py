@@ -124,13 +124,15 @@ def plane():
 
 
 def obj(name):
+    """The file is right-handed."""
     vertices, faces = [], []
     for line in open(os.path.join(settings["meshes"], name + ".obj")):
         word = line.split()
         if word and word[0] == "v":
-            vertices.append([float(x) for x in word[1:4]])
+            x, y, z = map(float, word[1:4])
+            vertices.append([x, y, -z])
         elif word and word[0] == "f":
-            faces.append([int(corner.split("/")[0]) - 1 for corner in word[1:]])
+            faces.append([int(corner.split("/")[0]) - 1 for corner in word[:0:-1]])
     return vertices, faces
 
 

@@ -2,8 +2,12 @@
 #   awk -v peer=povray -f experiments/peers/mesh_scene.awk mesh.obj >mesh.pov     # POV-Ray 3.7
 #   awk -v peer=tachyon -f experiments/peers/mesh_scene.awk mesh.obj >mesh.dat
 # Camera and light are those of scenes/soup.yaml. Numbers are passed to POV-Ray unchanged, to Tachyon with 9 decimals.
-$1 == "v" { place[vertices++] = "<" $2 "," $3 "," $4 ">"; corner[vertices] = sprintf("%.9f %.9f %.9f", $2, $3, $4) }
-$1 == "f" { face[faces++] = $2 " " $3 " " $4 }
+# The file is right-handed, the scene of both programs left-handed: z changes its sign, and corners their order.
+$1 == "v" {
+    if (!sub(/^-/, "", $4)) $4 = "-" $4
+    place[vertices++] = "<" $2 "," $3 "," $4 ">"; corner[vertices] = sprintf("%.9f %.9f %.9f", $2, $3, $4)
+}
+$1 == "f" { face[faces++] = $2 " " $4 " " $3 }
 END {
     if (peer == "tachyon") {
         print "BEGIN_SCENE\nRESOLUTION 800 600\nCAMERA\nZOOM 1.2071068\nASPECTRATIO 1.0\nANTIALIASING 0\nRAYDEPTH 1"

@@ -120,6 +120,8 @@ static status choose_format(mesh_request *request, diagnostic *why)
 static status load_mesh(const mesh_request *request, diagnostic *why)
 {
     status result = request->file ? scene_set(request->scene, "body.file", request->file, why) : STATUS_OK;
+    if (request->file) /* a file is described and written in its own axes */
+        THEN(result, scene_set(request->scene, "body.handedness", "left", why));
     THEN(result, scene_check(request->scene, why));
     THEN(result, scene_input_load(request->scene, why));
     if (result == STATUS_BAD_INPUT && request->generate)
@@ -132,7 +134,7 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
     const mesh_request *request = content;
     const mesh *m = request->scene->meshes[0].data;
     if (request->format != MESH_FORMAT_COUNT)
-        mesh_write(m, (mesh_format)request->format, stream);
+        mesh_write(m, (mesh_format)request->format, request->generate, stream);
     else if (request->json)
         return json_put(stream, mesh_rows_json(m), why);
     else

@@ -109,6 +109,7 @@ static const needs_row rows[] = {
     NEEDS_RAYS(BACKGROUND, "absorb_per_m"),
 
     FACT(MESH, "*", unused_mesh),
+    NEEDS(MESH, "handedness", "generate=file"),
     NEEDS(MESH, "count", "generate=sparse|dense|sphere"),
     NEEDS(MESH, "level", "generate=icosphere|slime"),
     NEEDS(MESH, "major minor", "generate=torus"),

@@ -89,16 +89,28 @@ const char *mesh_format_name(mesh_format format)
     return names[format];
 }
 
-static void write_obj(const mesh *m, FILE *stream)
+static vec3 mirrored_if(bool mirrored, vec3 v)
+{
+    return mirrored ? vec3_make(v.x, v.y, 0.0 - v.z) : v;
+}
+
+/* The corner of a triangle that is written as number k: a mirror exchanges the last two (mesh_mirror). */
+static uint32_t corner_if(bool mirrored, const mesh_triangle *t, int k)
+{
+    return t->corner[mirrored && k > 0 ? 3 - k : k];
+}
+
+static void write_obj(const mesh *m, bool mirrored, FILE *stream)
 {
     const int digits = m->single ? 9 : 17;
     for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
-        const vec3 p = m->vertices[v];
+        const vec3 p = mirrored_if(mirrored, m->vertices[v]);
         fprintf(stream, "v %.*g %.*g %.*g\n", digits, p.x, digits, p.y, digits, p.z);
     }
     for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
-        const uint32_t *corner = m->triangles[t].corner;
-        fprintf(stream, "f %lu %lu %lu\n", corner[0] + 1ul, corner[1] + 1ul, corner[2] + 1ul);
+        const mesh_triangle *one = &m->triangles[t];
+        fprintf(stream, "f %lu %lu %lu\n", corner_if(mirrored, one, 0) + 1ul, corner_if(mirrored, one, 1) + 1ul,
+                corner_if(mirrored, one, 2) + 1ul);
     }
 }
 
@@ -133,7 +145,7 @@ static void write_bin(const mesh *m, FILE *stream)
             put_vector(m->vertices[m->triangles[t].corner[k]], m->single, stream);
 }
 
-static void write_ply(const mesh *m, FILE *stream)
+static void write_ply(const mesh *m, bool mirrored, FILE *stream)
 {
     const char *real = m->single ? "float" : "double";
     fprintf(stream, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n", m->vertex_count);
@@ -145,9 +157,9 @@ static void write_ply(const mesh *m, FILE *stream)
     fprintf(stream, "element face %zu\nproperty list uchar int vertex_indices\n%send_header\n", m->triangle_count,
             m->slots ? "property uchar material_index\n" : "");
     for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
-        put_vector(m->vertices[v], m->single, stream);
+        put_vector(mirrored_if(mirrored, m->vertices[v]), m->single, stream);
         if (m->normals)
-            put_vector(m->normals[v], m->single, stream);
+            put_vector(mirrored_if(mirrored, m->normals[v]), m->single, stream);
         if (m->uvs) {
             put_real(m->uvs[v].u, m->single, stream);
             put_real(m->uvs[v].v, m->single, stream);
@@ -156,18 +168,18 @@ static void write_ply(const mesh *m, FILE *stream)
     for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
         putc(3, stream);
         for (int k = 0; k < 3; k++)
-            put_bits(m->triangles[t].corner[k], 4, stream);
+            put_bits(corner_if(mirrored, &m->triangles[t], k), 4, stream);
         if (m->slots)
             putc(m->slots[t], stream);
     }
 }
 
-void mesh_write(const mesh *m, mesh_format format, FILE *stream)
+void mesh_write(const mesh *m, mesh_format format, bool mirrored, FILE *stream)
 {
     switch (format) {
-    case MESH_OBJ: write_obj(m, stream); return;
+    case MESH_OBJ: write_obj(m, mirrored, stream); return;
     case MESH_BIN: write_bin(m, stream); return;
-    case MESH_PLY: write_ply(m, stream); return;
+    case MESH_PLY: write_ply(m, mirrored, stream); return;
     case MESH_FORMAT_COUNT: return;
     }
 }

@@ -16,8 +16,9 @@ json_t *mesh_rows_json(const mesh *m);
  *        as material_index)
  *
  * Single-precision coordinates are written with 9 significant digits, double-precision ones with 17, so that they read
- * back the same. */
+ * back the same. mirrored: obj and ply are written in right-handed axes (z changes its sign), as readers of these
+ * formats expect; bin is in the mesh's own. */
 typedef enum mesh_format { MESH_OBJ, MESH_BIN, MESH_PLY, MESH_FORMAT_COUNT } mesh_format;
 
 const char *mesh_format_name(mesh_format format); /* "obj" */
-void mesh_write(const mesh *m, mesh_format format, FILE *stream);
+void mesh_write(const mesh *m, mesh_format format, bool mirrored, FILE *stream);

@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     memcpy(text, data, size);
     text[size] = 0;
-    const status code = mesh_points_parse("fuzz.xyz", text, size, &got, &why);
+    const status code = mesh_points_parse("fuzz.xyz", text, size, false, &got, &why);
     free(text);
     if (code != STATUS_OK) {
         if (got || code != STATUS_BAD_INPUT || why.line < 1 || why.column < 1 || !why.what[0] || !why.remedy[0])

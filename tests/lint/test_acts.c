@@ -294,6 +294,7 @@ static const struct {
     {"slime", "toy.script= toy.ground=off"},
     {"rainbow-landscape", ""},
     {"meniscus", ""},
+    {"../../tests/data/acts/faces", ""}, /* a mesh from a file */
 };
 
 /* The path of the parameter that the row needs, for an object of that name; returns where its sign is. */

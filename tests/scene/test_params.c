@@ -128,6 +128,9 @@ static void sliders_are_the_useful_part_of_a_range(void **state)
     assert_slider(PARAM_RENDER, "width", NULL, "800", (param_slider){1, 2000, 1, 0});
     assert_slider(PARAM_RENDER, "width", "4000", "800", (param_slider){1, 10000, 1, 0});
     assert_slider(PARAM_RENDER, "threads", "auto", "auto", (param_slider){1, 20, 1, 0});
+    assert_slider(PARAM_SOLID, "scale", NULL, "1,1,1", (param_slider){0.001, 2.5, 0.001, 0});
+    assert_slider(PARAM_SOLID, "scale", NULL, "1,0.0001,4", (param_slider){0.0001, 8, 0.001, 0});
+    assert_slider(PARAM_SOLID, "scale", NULL, "-1,1,1", (param_slider){-2.5, 2.5, 0.001, 0});
     assert_slider(PARAM_RENDER, "build_threads", NULL, "0", (param_slider){0, 100, 1, 1});
     assert_slider(PARAM_RENDER, "photons", NULL, "1000", (param_slider){10, 30000000, 1, 10});
     assert_slider(PARAM_CAMERA, "fov_deg", NULL, "45", (param_slider){0.1, 179, 0.1, 0});
@@ -465,6 +468,8 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"camera.position=1,2", "camera.position: 2 values instead of 3; give 3 numbers, each -1000000..1000000"},
         {"camera.position=1,inf,2", "camera.position.y: 'inf' is not a finite number; give a number -1000000..1000000"},
         {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
+        {"lens.scale=-1,0,1", "lens.scale.y: 0 is out of range; give a number -1000000..1000000, not 0"},
+        {"lens.scale=1,-0,1", "lens.scale.y: -0 is out of range; give a number -1000000..1000000, not 0"},
         {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
         {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number > 0, at most 1000000000"},
         {"background.image=a\nb", "background.image: the path contains a control character; give a path of a file"},

@@ -166,7 +166,7 @@ static void a_cloud_is_where_its_solids_are(void **state)
 static status parse(const char *text, size_t size, mesh_import **out, diagnostic *why)
 {
     *why = (diagnostic){.what = ""};
-    return mesh_points_parse("p.xyz", text, size, out, why);
+    return mesh_points_parse("p.xyz", text, size, false, out, why);
 }
 
 static void points_are_three_numbers_a_line(void **state)

@@ -224,6 +224,20 @@ void mesh_find_bounds(mesh *m)
     m->single = single;
 }
 
+void mesh_mirror(mesh *m)
+{
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked_at(v); v++)
+        m->vertices[v].z = 0.0 - m->vertices[v].z;
+    for (size_t v = 0; m->normals && v < m->vertex_count && !cancel_asked_at(v); v++)
+        m->normals[v].z = 0.0 - m->normals[v].z;
+    for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
+        uint32_t *corner = m->triangles[t].corner;
+        const uint32_t swapped = corner[1];
+        corner[1] = corner[2];
+        corner[2] = swapped;
+    }
+}
+
 status mesh_finish(mesh *m, diagnostic *why)
 {
     TRY(mesh_check(m, why));

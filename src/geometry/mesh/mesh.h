@@ -76,6 +76,11 @@ status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_nor
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                    mesh **out, diagnostic *why);
 
+/* Mirrors an unfinished mesh between right-handed and left-handed axes: z changes its sign, and the last two corners of
+ * each triangle change places, so that fronts stay fronts. Twice is the identity, except that -0 becomes 0. When
+ * cancelled it ends early, and mesh_finish fails. */
+void mesh_mirror(mesh *m);
+
 /* Finishes a mesh. Checks that indices are in range and coordinates finite and within MESH_FAR, normalises normals (a
  * zero normal becomes the triangle's), computes the bounds, and finds whether the mesh is closed; for this, vertices at
  * equal positions are one vertex (-0 equals 0) and a triangle with two equal corners is skipped.

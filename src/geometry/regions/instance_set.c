@@ -43,9 +43,9 @@ static double largest_coordinate(const mesh *m, vec3 scale)
 {
     if (m->triangle_count == 0)
         return 0.0;
-    const double x = fmax(fabs(m->bounds.low.x), fabs(m->bounds.high.x)) * scale.x;
-    const double y = fmax(fabs(m->bounds.low.y), fabs(m->bounds.high.y)) * scale.y;
-    const double z = fmax(fabs(m->bounds.low.z), fabs(m->bounds.high.z)) * scale.z;
+    const double x = fmax(fabs(m->bounds.low.x), fabs(m->bounds.high.x)) * fabs(scale.x);
+    const double y = fmax(fabs(m->bounds.low.y), fabs(m->bounds.high.y)) * fabs(scale.y);
+    const double z = fmax(fabs(m->bounds.low.z), fabs(m->bounds.high.z)) * fabs(scale.z);
     return fmax(x, fmax(y, z));
 }
 

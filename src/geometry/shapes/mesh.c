@@ -14,8 +14,8 @@ static status check(const solid_shape *shape, diagnostic *why)
     if (!is_copy_count(n.x) || !is_copy_count(n.y) || !is_copy_count(n.z) || n.x * n.y * n.z > COPIES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
-    if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
-        return diagnose(why, STATUS_BAD_INPUT, "use scales above 0, and finite numbers",
+    if (s.x == 0.0 || s.y == 0.0 || s.z == 0.0 || !vec3_is_finite(s) || !vec3_is_finite(step))
+        return diagnose(why, STATUS_BAD_INPUT, "use scales other than 0, and finite numbers",
                         "scale is %g, %g, %g, spacing %g, %g, %g", s.x, s.y, s.z, step.x, step.y, step.z);
     return STATUS_OK;
 }
@@ -25,9 +25,9 @@ static double reach(const solid_shape *shape)
 {
     const bounds3 b = shape->mesh->bounds;
     const vec3 low = b.low, high = b.high, scale = shape->scale, n = shape->copies, step = shape->spacing;
-    const double x = largest_of(fabs(low.x), fabs(high.x), 0.0) * scale.x + (n.x - 1.0) * fabs(step.x);
-    const double y = largest_of(fabs(low.y), fabs(high.y), 0.0) * scale.y + (n.y - 1.0) * fabs(step.y);
-    const double z = largest_of(fabs(low.z), fabs(high.z), 0.0) * scale.z + (n.z - 1.0) * fabs(step.z);
+    const double x = largest_of(fabs(low.x), fabs(high.x), 0.0) * fabs(scale.x) + (n.x - 1.0) * fabs(step.x);
+    const double y = largest_of(fabs(low.y), fabs(high.y), 0.0) * fabs(scale.y) + (n.y - 1.0) * fabs(step.y);
+    const double z = largest_of(fabs(low.z), fabs(high.z), 0.0) * fabs(scale.z) + (n.z - 1.0) * fabs(step.z);
     return shape->mesh->triangle_count > 0 ? x + y + z : 0.0;
 }
 
@@ -63,9 +63,11 @@ static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 static shape_extent extent(const solid_shape *shape)
 {
     const vec3 more = copies_reach(shape);
-    bounds3 b = {times(shape->mesh->bounds.low, shape->scale), times(shape->mesh->bounds.high, shape->scale)};
-    b.low = vec3_add(b.low, vec3_make(fmin(more.x, 0.0), fmin(more.y, 0.0), fmin(more.z, 0.0)));
-    b.high = vec3_add(b.high, vec3_make(fmax(more.x, 0.0), fmax(more.y, 0.0), fmax(more.z, 0.0)));
+    const vec3 low = shape->mesh->bounds.low, high = shape->mesh->bounds.high, s = shape->scale;
+    bounds3 b = {vec3_make((s.x < 0.0 ? high : low).x, (s.y < 0.0 ? high : low).y, (s.z < 0.0 ? high : low).z),
+                 vec3_make((s.x < 0.0 ? low : high).x, (s.y < 0.0 ? low : high).y, (s.z < 0.0 ? low : high).z)};
+    b.low = vec3_add(times(b.low, s), vec3_make(fmin(more.x, 0.0), fmin(more.y, 0.0), fmin(more.z, 0.0)));
+    b.high = vec3_add(times(b.high, s), vec3_make(fmax(more.x, 0.0), fmax(more.y, 0.0), fmax(more.z, 0.0)));
     return (shape_extent){b, 0.5 * vec3_length(vec3_sub(b.high, b.low))};
 }
 
@@ -119,7 +121,8 @@ static double farthest_from(const placed_shape *placed, const round_frame *frame
 static double thickness(const solid_shape *shape)
 {
     const double area = mesh_area(shape->mesh);
-    return area > 0.0 ? 2.0 * fabs(mesh_volume(shape->mesh)) / area * least_of_three(shape->scale) : 0.0;
+    const vec3 s = shape->scale, size = vec3_make(fabs(s.x), fabs(s.y), fabs(s.z));
+    return area > 0.0 ? 2.0 * fabs(mesh_volume(shape->mesh)) / area * least_of_three(size) : 0.0;
 }
 
 const shape_rule shape_mesh = {

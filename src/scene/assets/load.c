@@ -221,10 +221,12 @@ static status make_face_materials(const mesh_import *imported, const char *root,
 
 static status read_mesh_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why)
 {
-    const mesh_limits import_limits = {.root = limits->root, .triangles = limits->triangles};
+    const bool points = mesh_is_points(path),
+               right_handed = m->handedness == HANDEDNESS_FILE ? !points : m->handedness == HANDEDNESS_RIGHT;
+    const mesh_limits import_limits = {
+        .root = limits->root, .triangles = limits->triangles, .right_handed = right_handed};
     mesh_import *imported;
-    const bool points = mesh_is_points(path);
-    TRY(points ? mesh_points_read(path, limits->root, &imported, why)
+    TRY(points ? mesh_points_read(path, limits->root, right_handed, &imported, why)
                : mesh_read_file(path, &import_limits, &imported, why));
     status code = points ? STATUS_OK : make_face_materials(imported, limits->root, &m->shading_materials, why);
     if (code == STATUS_OK) {

@@ -210,6 +210,8 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     TRY(read_arrays(source, into->mesh, why));
     TRY(read_materials(source, into, header.note_length, why));
     into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
+    if (limits->right_handed)
+        mesh_mirror(into->mesh);
     return mesh_finish(into->mesh, why);
 }
 
@@ -316,15 +318,18 @@ static status read_points(point_reader *r, const char *end, vec3 **points, size_
     }
 }
 
-static status make_points(const vec3 *points, size_t count, mesh_import *into, diagnostic *why)
+static status make_points(const vec3 *points, size_t count, bool right_handed, mesh_import *into, diagnostic *why)
 {
     TRY(mesh_create(count, 0, false, false, false, &into->mesh, why));
     memcpy(into->mesh->vertices, points, count * sizeof *points);
     into->mesh->distinct = true; /* without triangles, equal points are not joined */
+    if (right_handed)
+        mesh_mirror(into->mesh);
     return mesh_finish(into->mesh, why);
 }
 
-status mesh_points_parse(const char *name, const char *text, size_t size, mesh_import **out, diagnostic *why)
+status mesh_points_parse(const char *name, const char *text, size_t size, bool right_handed, mesh_import **out,
+                         diagnostic *why)
 {
     point_reader r = {.name = name, .at = text, .line = text, .number = 1, .why = why};
     vec3 *points = NULL;
@@ -334,7 +339,7 @@ status mesh_points_parse(const char *name, const char *text, size_t size, mesh_i
     status code = fresh ? read_points(&r, text + size, &points, &count) : out_of_memory(why);
     if (code == STATUS_OK && count == 0)
         code = point_error(&r, "give one point a line: x y z", "the file has no points");
-    THEN(code, make_points(points, count, fresh, why));
+    THEN(code, make_points(points, count, right_handed, fresh, why));
     free(points);
     if (code == STATUS_OK)
         *out = fresh;
@@ -349,13 +354,13 @@ bool mesh_is_points(const char *path)
     return length > ending && strcasecmp(path + length - ending, POINTS_ENDING) == 0;
 }
 
-status mesh_points_read(const char *path, const char *root, mesh_import **out, diagnostic *why)
+status mesh_points_read(const char *path, const char *root, bool right_handed, mesh_import **out, diagnostic *why)
 {
     char *text;
     size_t size;
     *out = NULL;
     TRY(file_read_below(path, root, POINTS_BYTES_MAX, &text, &size, why));
-    const status code = mesh_points_parse(path, text, size, out, why);
+    const status code = mesh_points_parse(path, text, size, right_handed, out, why);
     free(text);
     return code;
 }

@@ -14,6 +14,7 @@ typedef struct mesh_limits {
     size_t triangles, vertices; /* defaults 2^25 and 2^26 */
     uint64_t memory_bytes;      /* memory of the importer process; default 4 GiB */
     double wall_s;              /* default 60 */
+    bool right_handed;          /* of the file's axes: the mesh is mirrored into the left-handed world */
     const char *root;           /* folder of the file and of all files that it refers to (base/file.h); NULL or "": no
                          restriction. Borrowed */
 } mesh_limits;
@@ -60,8 +61,9 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
  * column, also for a file without points, and for more points than a scene can have solids. */
 #define POINTS_ENDING ".xyz"
 bool mesh_is_points(const char *path); /* by the ending of its name */
-status mesh_points_read(const char *path, const char *root, mesh_import **out, diagnostic *why);
-status mesh_points_parse(const char *name, const char *text, size_t size, mesh_import **out, diagnostic *why);
+status mesh_points_read(const char *path, const char *root, bool right_handed, mesh_import **out, diagnostic *why);
+status mesh_points_parse(const char *name, const char *text, size_t size, bool right_handed, mesh_import **out,
+                         diagnostic *why);
 
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
 

@@ -59,6 +59,7 @@ typedef struct param {
     int64_t automatic_value;    /* the value that `automatic` stands for */
     size_t offset;              /* in the group's struct */
     param_slider slider;        /* declared only if the slider that param_slider_of derives is unsuitable */
+    bool not_zero;              /* 0, or a 0 among the elements, is out of range */
     bool coefficient;           /* PARAM_COLOR: an absorption coefficient of each channel, not a colour */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */

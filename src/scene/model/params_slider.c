@@ -76,7 +76,7 @@ static param_slider declared(const param *row, extent all)
         s.log_from = s.log_from > 0 ? 1e-5 * s.highest : 0;
     }
     if (s.lowest >= 0 && all.least < s.lowest)
-        s.lowest = lowest_of(row, s.step, all);
+        s.lowest = row->lowest >= 0 ? lowest_of(row, s.step, all) : all.least < 0 ? -s.highest : all.least;
     return s;
 }
 

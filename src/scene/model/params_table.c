@@ -29,6 +29,7 @@ static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
 /* arrays: triangles from a program that uses the library; a scene file cannot contain them */
 static const char *const source_words[] = {"file",  "sparse",  "dense", "sphere", "icosphere", "torus",
                                            "lathe", "terrain", "box",   "slime",  "arrays",    NULL};
+static const char *const handedness_words[] = {"file", "right", "left", NULL};
 static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
 static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
@@ -305,6 +306,9 @@ static const param table[] = {
      source_words, OF(mesh_entry, source)},
     {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, relative to the scene file",
      NULL, OF(mesh_entry, path)},
+    CHOICE(PARAM_MESH, mesh_entry, handedness, handedness_words, "file",
+           "axes of the file; from right-handed ones z changes its sign, because the world is left-handed; file: "
+           "right-handed, or left-handed for points"),
     ROW(PARAM_MESH, "count", PARAM_INT, "", 1, 100000000, false, "10000",
         "number of triangles of sparse and dense; of sphere: the nearest 20 f^2", NULL, OF(mesh_entry, count), DECADES),
     INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4",
@@ -584,8 +588,9 @@ static const param table[] = {
     {PARAM_SOLID, "points", PARAM_WORD, "", 0, 0, false, "",
      "name of a mesh: a copy of the solid is at each of its vertices, along the solid's own axes from its position",
      NULL, SHAPE(points)},
-    {PARAM_SOLID, "scale", PARAM_VECTOR, "", 0, FAR, true, "1,1,1",
-     "of a mesh, or of points: along the solid's own axes", NULL, SHAPE(shape.scale)},
+    {PARAM_SOLID, "scale", PARAM_VECTOR, "", -FAR, FAR, false, "1,1,1",
+     "of a mesh, or of points: along the solid's own axes; a negative number mirrors", NULL, SHAPE(shape.scale),
+     .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1",
      "mesh: number of copies along each of its own axes", NULL, SHAPE(shape.copies)},
     {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1",

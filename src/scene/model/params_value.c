@@ -24,7 +24,8 @@ static void interval_text(const param *row, char *text, size_t size)
     char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     number_format(row->lowest, low);
     number_format(row->highest, high);
-    snprintf(text, size, row->above_lowest ? "> %s, at most %s" : "%s..%s", low, high);
+    snprintf(text, size, row->above_lowest ? "> %s, at most %s%s" : "%s..%s%s", low, high,
+             row->not_zero ? ", not 0" : "");
 }
 
 static void choice_text(const param *row, char *text, size_t size)
@@ -168,7 +169,8 @@ static status wrong(const param *row, bool one_element, diagnostic *why, const c
 
 static bool in_range(const param *row, double value)
 {
-    return value <= row->highest && (row->above_lowest ? value > row->lowest : value >= row->lowest);
+    return value <= row->highest && (row->above_lowest ? value > row->lowest : value >= row->lowest) &&
+           !(row->not_zero && value == 0.0);
 }
 
 /* Reports a text that is not a number; the remedy depends on a decimal comma or a unit after the digits. */

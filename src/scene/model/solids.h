@@ -54,6 +54,9 @@ typedef enum mesh_maker {
     MESH_ARRAYS
 } mesh_maker;
 
+/* The axes of a mesh file: the format's own (right-handed, but left-handed for points), or given. */
+typedef enum mesh_handedness { HANDEDNESS_FILE, HANDEDNESS_RIGHT, HANDEDNESS_LEFT } mesh_handedness;
+
 /* --- the materials in a mesh file --- */
 
 typedef struct face_material {
@@ -86,6 +89,7 @@ typedef struct mesh_entry {
     int64_t source;              /* mesh_maker */
     char *path;                  /* relative to the scene file; "" for none */
     long path_line, path_column; /* where the scene file names the file or the generator; 0 if it does not */
+    int64_t handedness;          /* mesh_handedness, for a file */
     int64_t count;               /* triangles, for sparse, dense and sphere */
     int64_t level;               /* for icosphere and slime */
     double major, minor;         /* for torus */

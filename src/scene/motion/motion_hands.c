@@ -112,7 +112,7 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
                          int *number, diagnostic *why)
 {
     const solid_shape *shape = &m->s->solids[place->solid].shape;
-    const double largest = fmax(shape->scale.x, fmax(shape->scale.y, shape->scale.z));
+    const double largest = fmax(fabs(shape->scale.x), fmax(fabs(shape->scale.y), fabs(shape->scale.z)));
     const int hand = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
     if (hand == HAND_NO_MEMORY)
         return out_of_memory(why);

@@ -282,7 +282,7 @@ static double reach_of(const live *l, const grab_request *q, size_t index, const
     const double fraction = 0.3;
     const vec3 scale = l->snapshot->solids[place->solid].shape.scale;
     const double radius = l->snapshot->meshes[scene_motion_mesh(l->motion, index)].slime.radius;
-    return q->reach > 0.0 ? q->reach : fraction * radius * fmax(scale.x, fmax(scale.y, scale.z));
+    return q->reach > 0.0 ? q->reach : fraction * radius * fmax(fabs(scale.x), fmax(fabs(scale.y), fabs(scale.z)));
 }
 
 static live_hand *free_hand(live *l)

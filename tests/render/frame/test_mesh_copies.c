@@ -74,7 +74,7 @@ static void the_extent_of_copies_is_that_of_their_vertices(void **state)
     mesh *m = NULL;
     assert_int_equal(generate_icosphere(1, &m, NULL), STATUS_OK);
     for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
-        const vec3 n = grids[g][0], step = grids[g][1], scale = {0.5, 1.5, 0.8};
+        const vec3 n = grids[g][0], step = grids[g][1], scale = {g % 2 ? -0.5 : 0.5, 1.5, g > 1 ? -0.8 : 0.8};
         const solid_shape s = {.kind = SHAPE_MESH, .mesh = m, .scale = scale, .copies = n, .spacing = step};
         const shape_rule *rule = shape_of(&s);
         const bounds3 b = rule->extent(&s).box;
