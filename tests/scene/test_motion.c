@@ -11,10 +11,11 @@
 
 #include "bad_files.h"
 #include "base/cancel.h"
+#include "base/hash.h"
 #include "render_fixture.h"
 #include "scene/assets/script.h"
 #include "scene/model/scene.h"
-#include "scene/motion/motion.h"
+#include "scene/motion/motion_hands.h"
 
 /* A moving scene: its film at each time equals that of the scene loaded with that time_s for its slimes. */
 
@@ -408,6 +409,39 @@ static void missing_and_too_large_scripts_are_refused(void **state)
     free(huge);
 }
 
+/* Grabs the slime where the ray hits it, pulls it by `by`, and returns a hash of its vertices, which are those of the
+ * mesh's frame. */
+static uint64_t grabbed(const char *assignments, vec3 origin, vec3 direction, vec3 by)
+{
+    scene *s = toys_with(assignments);
+    scene_motion *m = begin(s);
+    motion_hand hands[SOFTBODY_HANDS_MAX] = {{.holds = false}};
+    motion_place place;
+    diagnostic why = {0};
+    int number = -1;
+    worked(scene_motion_pick(m, 0, 1, origin, direction, &place, &why), &why);
+    assert_true(place.distance < 10.0);
+    worked(scene_motion_grab(m, 0, &place, 0.9, hands, &number, &why), &why);
+    hands[number].to = motion_hand_offset(&hands[number], by);
+    worked(scene_motion_step_held(m, 0, hands, 0.05, NULL, &why), &why);
+    advance(m, 0.05, true);
+    const mesh *shown = s->meshes[scene_motion_mesh(m, 0)].data;
+    const uint64_t hash = hash_numbers(0, &shown->vertices->x, 3 * shown->vertex_count, sizeof(double));
+    scene_motion_destroy(m);
+    scene_destroy(s);
+    return hash;
+}
+
+static void a_mirrored_slime_is_grabbed_where_it_is_seen(void **state)
+{
+    (void)state;
+    const vec3 o = {-0.4, 1.0, -5.0}, d = {0.0, 0.0, 1.0}, by = {0.25, 0.5, -0.5};
+    const uint64_t plain = grabbed("", o, d, by);
+    assert_true(plain != grabbed("", o, d, vec3_make(0.25, 0.5, 0.5)));
+    assert_true(plain ==
+                grabbed("jelly.scale=-1,-1,-1", vec3_scale(o, -1.0), vec3_scale(d, -1.0), vec3_scale(by, -1.0)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -421,6 +455,7 @@ int main(void)
         cmocka_unit_test(an_unstable_slime_is_reported),
         cmocka_unit_test(an_interrupted_advance_can_be_continued),
         cmocka_unit_test(the_hands_and_keys_of_a_valid_script_are_read),
+        cmocka_unit_test(a_mirrored_slime_is_grabbed_where_it_is_seen),
         cmocka_unit_test(errors_in_scripts_are_located),
         cmocka_unit_test(truncated_scripts_are_valid_or_refused),
         cmocka_unit_test(missing_and_too_large_scripts_are_refused),
