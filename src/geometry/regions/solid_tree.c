@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+_Static_assert(SET_PRIMITIVES_MAX <= 1 << 3 * BOXES_DEPTH_MAX, "a node has an eighth of the items of the one above");
+
 /* --- the hierarchy of boxes --- */
 
 typedef struct boxes_build {

@@ -11,7 +11,6 @@
 /* The tree's hierarchy: axis-aligned boxes, eight to a node, by median splits along the longest axis. Boxes are single
  * precision, rounded outwards. Any number of threads may use it at once. */
 enum { BOXES_WIDE = 8, BOXES_DEPTH_MAX = 7 };
-_Static_assert(SET_PRIMITIVES_MAX <= 1 << 3 * BOXES_DEPTH_MAX, "a node has an eighth of the items of the one above");
 
 /* Boxes by axis and child. A child is a node's number, or ~i for item i; used: -1, or 0 for no child. */
 typedef struct boxes_node {
