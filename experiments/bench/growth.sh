@@ -29,7 +29,7 @@ prepare() {
     for n in $depths; do add depth "$n" "$here/scenes/rod.yaml" "$size" render.depth="$n"; done
 }
 round() {
-    local run series n scene frame sets
+    local run series n scene frame sets row value
     for run in "${runs[@]}"; do
         read -r series n scene frame sets <<<"$run"
         # shellcheck disable=SC2086 # a list of words without blanks
@@ -38,8 +38,9 @@ round() {
             echo "$name: $series $n is left out: $(tail -n 1 "$work/err")" >&2 # a machine of little memory
             continue
         }
-        echo "$series $n" "$(field cpu_s <"$work/json")" "$(field total <"$work/json")" "$(field camera <"$work/json")" \
-            "$(field peak_rss_bytes <"$work/json")"
+        row="$series $n"
+        for value in cpu_s total camera peak_rss_bytes; do row+=" $(field $value <"$work/json")"; done
+        echo "$row"
     done >>"$work/rows"
 }
 

@@ -95,6 +95,10 @@ status study_instructions_begin(study_request *request, counted_run *out, diagno
     request->results = out->results;
     snprintf(path, sizeof path, "%s/frame", out->folder);
     setenv(INSTRUCTION_DUMPS_VARIABLE, path, 1);
+    /* So that no frame counts the search for symbols, and each clears the memory that it uses: after the heap has
+     * shrunk, the system would clear it, uncounted. */
+    setenv("LD_BIND_NOW", "1", 1);
+    setenv("GLIBC_TUNABLES", "glibc.malloc.trim_threshold=1073741824", 0);
 #if defined(__x86_64__)
     setenv("CUVETTE_ISA", "avx2", 0); /* valgrind does not know AVX-512 */
     if (strcmp(getenv("CUVETTE_ISA"), "avx512") == 0)
