@@ -163,7 +163,7 @@ static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, siz
     void *memory;
     TRY(reserve(r, sizeof(node) + extra, &memory));
     *out = memory;
-    **out = (node){.kind = kind, .line = (unsigned)mark.line + 1, .column = (unsigned)mark.column + 1};
+    **out = (node){.kind = kind, .line = (int)mark.line + 1, .column = (int)mark.column + 1};
     return STATUS_OK;
 }
 

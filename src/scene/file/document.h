@@ -11,10 +11,10 @@ typedef enum node_kind { NODE_SCALAR, NODE_LIST, NODE_MAP } node_kind;
 typedef struct node {
     node_kind kind;
     bool quoted;
-    unsigned line, column; /* from 1 */
-    char *text;            /* NODE_SCALAR */
-    struct node **items;   /* NODE_LIST: items; NODE_MAP: values */
-    struct node **keys;    /* NODE_MAP: unique scalars */
+    int line, column;    /* from 1 */
+    char *text;          /* NODE_SCALAR */
+    struct node **items; /* NODE_LIST: items; NODE_MAP: values */
+    struct node **keys;  /* NODE_MAP: unique scalars */
     size_t count;
 } node;
 
