@@ -100,7 +100,7 @@ int topology_discover(const char *synthetic, FILE *out)
     hwloc_topology_t tree;
     if (hwloc_topology_init(&tree) != 0)
         return STATUS_FAILURE;
-    const status code = describe(tree, synthetic, out);
+    const int code = (int)describe(tree, synthetic, out);
     hwloc_topology_destroy(tree);
     return code;
 }

@@ -435,8 +435,8 @@ points() { # WHAT PATTERN TEXT
     refused "points: $1" "$2" render points.yaml --json
     refused "points, checked: $1" "$2" scene points.yaml --check
 }
-points "a missing number" '[^;]*p\.xyz:2:4: p: .*missing; give three numbers' '1 2 3\n1 2\n'
-points "a word" '[^;]*p\.xyz:1:3: p: this is not a finite number; give' '1 two 3\n'
+points "a missing number" '[^;]*p\.xyz:2:4: .*missing; give three numbers' '1 2 3\n1 2\n'
+points "a word" '[^;]*p\.xyz:1:3: this is not a finite number; give' '1 two 3\n'
 points "a fourth number" '[^;]*p\.xyz:1:7: .*follows' '1 2 3 -4\n'
 points "a coordinate that is too large" '[^;]*p\.xyz:1:5: .*too large' '1 2 1e7\n'
 points "binary" '[^;]*p\.xyz:1:1: .*' '\0\1\2\3'

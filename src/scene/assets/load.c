@@ -319,10 +319,7 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     diagnostic bad = {.what = ""};
     const status code = read_mesh_file(m, path, &s->limits, &bad);
     free(path);
-    /* an error in a text of points has its own place there */
-    return code == STATUS_OK
-               ? code
-               : scene_file_error(s, m->name, bad.line ? 0 : m->path_line, m->path_column, &bad, code, why);
+    return code == STATUS_OK ? code : scene_file_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
 /* Fails if the triangles of all meshes exceed the limit. `further`: the triangles of m if it is not generated yet. */
