@@ -138,8 +138,7 @@ status param_place_each(const scene *s, param_group group, param_place_visit *vi
 
 /* The value of a place as text, in the form of scene_get. Newly allocated; NULL if memory runs out. */
 char *param_place_text(const scene *s, const param_place *at);
-/* Whether two objects have bit-identical values of a row, in their structs `one` and `other`; false also if that is not
- * known. Equal values have equal texts. */
+/* Whether two objects, whose structs are `one` and `other`, have values of a row with the same text. */
 bool param_values_match(const param *row, const void *one, const void *other);
 
 /* Finds the target of a path. STATUS_BAD_INPUT for an invalid path, with the nearest valid path as remedy. */

@@ -118,20 +118,41 @@ char *param_value_text(const param *row, int element, const void *field)
     return NULL;
 }
 
-bool param_values_match(const param *row, const void *one, const void *other)
+/* Compares bits: 0 and -0 are different texts. */
+static bool equal_numbers(const double *a, const double *b, size_t count)
 {
-    const char *a = (const char *)one + row->offset, *b = (const char *)other + row->offset;
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+static bool equal_paths(char *const *a, char *const *b)
+{
+    return strcmp(*a ? *a : "", *b ? *b : "") == 0;
+}
+
+static bool equal_lists(const number_list *a, const number_list *b)
+{
+    return a->count == b->count && equal_numbers(a->value, b->value, (size_t)a->count);
+}
+
+/* Whether two fields of a row have the same text. A param_value is the field of its type. */
+static bool fields_match(const param *row, const void *a, const void *b)
+{
     switch (row->type) {
     case PARAM_INT:
-    case PARAM_CHOICE: return memcmp(a, b, sizeof(int64_t)) == 0;
-    case PARAM_REAL: return memcmp(a, b, sizeof(double)) == 0;
+    case PARAM_CHOICE: return *(const int64_t *)a == *(const int64_t *)b;
+    case PARAM_REAL: return equal_numbers(a, b, 1);
     case PARAM_VECTOR:
-    case PARAM_COLOR: return memcmp(a, b, sizeof(vec3)) == 0;
-    case PARAM_LIST: return memcmp(a, b, sizeof(number_list)) == 0;
+    case PARAM_COLOR: return equal_numbers(a, b, 3);
+    case PARAM_LIST: return equal_lists(a, b);
+    case PARAM_PATH: return equal_paths(a, b);
     case PARAM_WORD: return strcmp(a, b) == 0;
-    case PARAM_PATH: break;
     }
     return false;
+}
+
+bool param_values_match(const param *row, const void *one, const void *other)
+{
+    return fields_match(row, (const char *)one + row->offset, (const char *)other + row->offset);
 }
 
 /* --- from text --- */
@@ -476,26 +497,7 @@ param_defaults *param_first_defaults_create(void)
     return made;
 }
 
-/* Compares bits: 0 and -0 are different texts. */
-static bool same_numbers(const double *a, const double *b, size_t count)
-{
-    return memcmp(a, b, count * sizeof *a) == 0;
-}
-
 bool param_defaults_hold(const param_defaults *d, const param *row, const void *field)
 {
-    const param_value *value = &d->value[row - param_at(0)];
-    const number_list *list = field;
-    switch (row->type) {
-    case PARAM_INT:
-    case PARAM_CHOICE: return *(const int64_t *)field == value->integer;
-    case PARAM_REAL: return same_numbers(field, &value->real, 1);
-    case PARAM_VECTOR:
-    case PARAM_COLOR: return same_numbers(field, &value->vector.x, 3);
-    case PARAM_LIST:
-        return list->count == value->list.count && same_numbers(list->value, value->list.value, (size_t)list->count);
-    case PARAM_PATH: return strcmp(*(char *const *)field ? *(char *const *)field : "", value->path) == 0;
-    case PARAM_WORD: return strcmp(field, value->word) == 0;
-    }
-    return false;
+    return fields_match(row, field, &d->value[row - param_at(0)]);
 }
