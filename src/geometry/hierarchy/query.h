@@ -341,9 +341,31 @@ ALWAYS_INLINE float pending_near(uint64_t p)
 }
 
 /* The planes of a node's boxes at an offset. */
-ALWAYS_INLINE const float *planes_at(const bvh_node *node, size_t offset)
+ALWAYS_INLINE const float *planes_at(const void *node, size_t offset)
 {
     return (const float *)(const void *)((const char *)node + offset);
+}
+
+/* The distances at which a ray enters a node's eight boxes, and at which it leaves them or reaches t_max. */
+ALWAYS_INLINE void box_distances(const void *node, const box_ray *b, float t_max, float *restrict nears,
+                                 float *restrict fars)
+{
+    const float *restrict nx = planes_at(node, b->near[0]), *restrict ny = planes_at(node, b->near[1]),
+                          *restrict nz = planes_at(node, b->near[2]);
+    const float *restrict fx = planes_at(node, b->far[0]), *restrict fy = planes_at(node, b->far[1]),
+                          *restrict fz = planes_at(node, b->far[2]);
+    const float ix = b->inverse[0], iy = b->inverse[1], iz = b->inverse[2];
+    /* VECTORISE */
+    for (int i = 0; i < WIDTH; i++) {
+        const float x = MULTIPLY_ADD(nx[i], ix, b->near_offset[0]), y = MULTIPLY_ADD(ny[i], iy, b->near_offset[1]),
+                    z = MULTIPLY_ADD(nz[i], iz, b->near_offset[2]);
+        const float u = MULTIPLY_ADD(fx[i], ix, b->far_offset[0]), v = MULTIPLY_ADD(fy[i], iy, b->far_offset[1]),
+                    w = MULTIPLY_ADD(fz[i], iz, b->far_offset[2]);
+        const float xy = x > y ? x : y, zt = z > b->t_min ? z : b->t_min;
+        const float uv = u < v ? u : v, wt = w < t_max ? w : t_max;
+        nears[i] = xy > zt ? xy : zt;
+        fars[i] = uv < wt ? uv : wt;
+    }
 }
 
 /* Prefetches the node or the blocks of a child, for which the traversal would wait in a large mesh. */

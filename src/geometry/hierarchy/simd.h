@@ -23,10 +23,6 @@ typedef int8_t int8x8 __attribute__((vector_size(8)));
 typedef int8_t int4x8 __attribute__((vector_size(4)));
 typedef int8_t int16x8 __attribute__((vector_size(16)));
 
-ALWAYS_INLINE float8 float8_all(float v)
-{
-    return (float8){v, v, v, v, v, v, v, v};
-}
 ALWAYS_INLINE double4 double4_all(double v)
 {
     return (double4){v, v, v, v};

@@ -11,25 +11,10 @@
 /* --- bvh --- */
 
 /* The children whose boxes the ray enters before t_best, and the distances, at least t_min, at which it does. */
-ALWAYS_INLINE uint64_t enter_children(const bvh_node *node, const box_ray *b, float t_best, float *__restrict nears)
+ALWAYS_INLINE uint64_t enter_children(const bvh_node *node, const box_ray *b, float t_best, float *nears)
 {
-    const float *__restrict nx = planes_at(node, b->near[0]), *__restrict ny = planes_at(node, b->near[1]),
-                            *__restrict nz = planes_at(node, b->near[2]);
-    const float *__restrict fx = planes_at(node, b->far[0]), *__restrict fy = planes_at(node, b->far[1]),
-                            *__restrict fz = planes_at(node, b->far[2]);
-    const float ix = b->inverse[0], iy = b->inverse[1], iz = b->inverse[2];
     _Alignas(32) float fars[WIDTH];
-    /* VECTORISE */
-    for (int i = 0; i < WIDTH; i++) {
-        const float x = MULTIPLY_ADD(nx[i], ix, b->near_offset[0]), y = MULTIPLY_ADD(ny[i], iy, b->near_offset[1]),
-                    z = MULTIPLY_ADD(nz[i], iz, b->near_offset[2]);
-        const float u = MULTIPLY_ADD(fx[i], ix, b->far_offset[0]), v = MULTIPLY_ADD(fy[i], iy, b->far_offset[1]),
-                    w = MULTIPLY_ADD(fz[i], iz, b->far_offset[2]);
-        const float xy = x > y ? x : y, zt = z > b->t_min ? z : b->t_min;
-        const float uv = u < v ? u : v, wt = w < t_best ? w : t_best;
-        nears[i] = xy > zt ? xy : zt;
-        fars[i] = uv < wt ? uv : wt;
-    }
+    box_distances(node, b, t_best, nears, fars);
     return lanes_ordered(nears, fars);
 }
 

@@ -8,6 +8,7 @@
 #include "geometry/hierarchy/query.h"
 #include "geometry/rays.h"
 #include "geometry/regions/solid_tree.h"
+#include <stddef.h>
 
 /* --- one box ---
  *
@@ -102,36 +103,18 @@ ALWAYS_INLINE boxes_ray boxes_ray_start(const solid_boxes *b, vec3 origin, vec3 
     return r;
 }
 
-/* The planes of a node's boxes at an offset (query.h). */
-ALWAYS_INLINE const float *boxes_planes(const boxes_node *n, size_t offset)
-{
-    return (const float *)(const void *)((const char *)n + offset);
-}
-
 /* The children of a node, as lanes, that the ray may enter before its t_max; near: the t at which it enters each. */
-ALWAYS_INLINE uint64_t boxes_entered(const boxes_node *n, const boxes_ray *r, float *restrict near)
+ALWAYS_INLINE uint64_t boxes_entered(const boxes_node *n, const boxes_ray *r, float *near)
 {
-    const box_ray *b = &r->box;
-    const float *restrict nx = boxes_planes(n, b->near[0]), *restrict ny = boxes_planes(n, b->near[1]),
-                          *restrict nz = boxes_planes(n, b->near[2]);
-    const float *restrict fx = boxes_planes(n, b->far[0]), *restrict fy = boxes_planes(n, b->far[1]),
-                          *restrict fz = boxes_planes(n, b->far[2]);
     _Alignas(32) float far[BOXES_WIDE];
     int8x32 used;
     memcpy(&used, n->used, sizeof used);
-    /* VECTORISE */
-    for (int i = 0; i < BOXES_WIDE; i++) {
-        const float x = MULTIPLY_ADD(nx[i], b->inverse[0], b->near_offset[0]),
-                    y = MULTIPLY_ADD(ny[i], b->inverse[1], b->near_offset[1]),
-                    z = MULTIPLY_ADD(nz[i], b->inverse[2], b->near_offset[2]);
-        const float u = MULTIPLY_ADD(fx[i], b->inverse[0], b->far_offset[0]),
-                    v = MULTIPLY_ADD(fy[i], b->inverse[1], b->far_offset[1]),
-                    w = MULTIPLY_ADD(fz[i], b->inverse[2], b->far_offset[2]);
-        near[i] = boxes_max(boxes_max(x, y), boxes_max(z, b->t_min));
-        far[i] = boxes_min(boxes_min(u, v), boxes_min(w, r->t_max));
-    }
+    box_distances(n, &r->box, r->t_max, near, far);
     return lanes_of8((floats_at(near) <= floats_at(far)) & used);
 }
+
+_Static_assert((int)BOXES_WIDE == (int)WIDTH && offsetof(boxes_node, high) == 3 * sizeof(float[WIDTH]),
+               "box_distances reads a node as it reads that of a mesh");
 
 /* Called with each item whose box the ray may enter before t_max. Returns t_max or a smaller bound; a negative one ends
  * the search. */
