@@ -5,30 +5,6 @@
 #include "import/plain.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-/* The mesh in the form of the importer's answer. */
-typedef struct answer {
-    const char *bytes;
-    size_t left;
-} answer;
-
-static status read_answer(void *context, void *bytes, size_t size, diagnostic *why)
-{
-    answer *a = context;
-    if (a->left < size)
-        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the file", "the mesh is incomplete");
-    memcpy(bytes, a->bytes, size);
-    a->bytes += size;
-    a->left -= size;
-    return STATUS_OK;
-}
-
-static status end_answer(void *context, diagnostic *why)
-{
-    (void)context, (void)why;
-    return STATUS_OK;
-}
 
 /* Writes the mesh, releases it, and reads what was written, with the checks of the program. */
 static status import_flat(flat_mesh *flat, const mesh_limits *limits, mesh_import **out, diagnostic *why)
@@ -40,8 +16,7 @@ static status import_flat(flat_mesh *flat, const mesh_limits *limits, mesh_impor
     status code = flat_write(flat, to.stream, why);
     flat_release(flat);
     code = text_writer_end(&to, code, &bytes, &size, why);
-    const mesh_source source = {.read = read_answer, .end = end_answer, .context = &(answer){bytes, size}};
-    THEN(code, mesh_stream_read(&source, limits, out, why));
+    THEN(code, mesh_stream_read_bytes(bytes, size, limits, out, why));
     free(bytes);
     return code;
 }

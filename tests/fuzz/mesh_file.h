@@ -6,42 +6,21 @@
 #include "import/plain.h"
 #include "scene/assets/mesh_stream.h"
 
-typedef struct reply {
-    char *at;
-    size_t size, read;
-} reply;
-
-__attribute__((unused)) static status take_reply(void *context, void *bytes, size_t size, diagnostic *why)
-{
-    reply *r = context;
-    if (size > r->size - r->read)
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "ends early");
-    memcpy(bytes, r->at + r->read, size);
-    r->read += size;
-    return STATUS_OK;
-}
-
-__attribute__((unused)) static status end_reply(void *context, diagnostic *why)
-{
-    const reply *r = context;
-    return r->read == r->size ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, NULL, "goes on");
-}
-
 /* Numbers that are not finite, and materials out of range, are refused only here. */
 __attribute__((unused)) static void pass_on(const request *req, const flat_mesh *flat)
 {
-    reply r = {0};
-    FILE *to = open_memstream(&r.at, &r.size);
+    char *bytes = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&bytes, &size);
     must(to && flat_write(flat, to, NULL) == STATUS_OK && fclose(to) == 0);
-    const mesh_source source = {take_reply, end_reply, &r};
     const mesh_limits limits = {.triangles = req->triangles, .vertices = req->vertices};
     mesh_import *got = NULL;
     diagnostic why = {.what = ""};
-    const status code = mesh_stream_read(&source, &limits, &got, &why);
+    const status code = mesh_stream_read_bytes(bytes, size, &limits, &got, &why);
     if (code != STATUS_OK)
         must_refuse(code, &why);
     mesh_import_destroy(got);
-    free(r.at);
+    free(bytes);
 }
 
 __attribute__((unused)) static request request_of(const char *path, file_kind kind)

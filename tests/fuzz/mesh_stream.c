@@ -5,27 +5,6 @@
 #include "fuzz.h"
 #include <math.h>
 
-typedef struct rest {
-    const uint8_t *at;
-    size_t size;
-} rest;
-
-static status take(void *context, void *bytes, size_t size, diagnostic *why)
-{
-    rest *r = context;
-    if (size > r->size)
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "ends early");
-    memcpy(bytes, r->at, size);
-    r->at += size;
-    r->size -= size;
-    return STATUS_OK;
-}
-
-static status end(void *context, diagnostic *why)
-{
-    return ((rest *)context)->size == 0 ? STATUS_OK : diagnose(why, STATUS_BAD_INPUT, NULL, "goes on");
-}
-
 static void check(const mesh_import *got)
 {
     const mesh *m = got->mesh;
@@ -49,12 +28,10 @@ static void check(const mesh_import *got)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    rest all = {data, size};
-    mesh_source source = {take, end, &all};
     mesh_limits limits = {.triangles = 10000, .vertices = 10000};
     mesh_import *got;
     diagnostic why = {.what = ""};
-    status code = mesh_stream_read(&source, &limits, &got, &why);
+    status code = mesh_stream_read_bytes(data, size, &limits, &got, &why);
     if (code == STATUS_OK) {
         check(got);
         mesh_import_destroy(got);

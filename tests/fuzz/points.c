@@ -4,8 +4,6 @@
 
 #include "fuzz.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -19,16 +17,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const status code = mesh_points_parse("fuzz.xyz", text, size, false, &got, &why);
     free(text);
     if (code != STATUS_OK) {
-        if (got || code != STATUS_BAD_INPUT || why.line < 1 || why.column < 1 || !why.what[0] || !why.remedy[0])
-            __builtin_trap();
+        must_refuse(code, &why);
+        must(!got && why.line >= 1 && why.column >= 1 && why.remedy[0]);
         return 0;
     }
     const bounds3 b = got->mesh->bounds;
     for (size_t i = 0; i < got->mesh->vertex_count; i++) {
         const vec3 p = got->mesh->vertices[i];
-        if (!(fabs(p.x) <= 1e6 && p.x >= b.low.x && p.y >= b.low.y && p.z >= b.low.z && p.x <= b.high.x &&
-              p.y <= b.high.y && p.z <= b.high.z))
-            __builtin_trap();
+        must(fabs(p.x) <= 1e6 && p.x >= b.low.x && p.y >= b.low.y && p.z >= b.low.z && p.x <= b.high.x &&
+             p.y <= b.high.y && p.z <= b.high.z);
     }
     mesh_import_destroy(got);
     return 0;

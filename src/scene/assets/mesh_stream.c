@@ -231,6 +231,36 @@ status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, me
     return STATUS_OK;
 }
 
+typedef struct memory_source {
+    const char *at;
+    size_t left;
+} memory_source;
+
+static status read_memory(void *context, void *bytes, size_t size, diagnostic *why)
+{
+    memory_source *m = context;
+    if (size > m->left)
+        return damaged(why, "it is incomplete");
+    memcpy(bytes, m->at, size);
+    m->at += size;
+    m->left -= size;
+    return STATUS_OK;
+}
+
+static status end_memory(void *context, diagnostic *why)
+{
+    const memory_source *m = context;
+    return m->left == 0 ? STATUS_OK : damaged(why, "it has the wrong length");
+}
+
+status mesh_stream_read_bytes(const void *bytes, size_t size, const mesh_limits *limits, mesh_import **out,
+                              diagnostic *why)
+{
+    memory_source m = {bytes, size};
+    const mesh_source source = {read_memory, end_memory, &m};
+    return mesh_stream_read(&source, limits, out, why);
+}
+
 /* --- points as text --- */
 
 enum { POINTS_BYTES_MAX = 256 << 20 };

@@ -55,6 +55,9 @@ typedef struct mesh_source {
 
 /* STATUS_BAD_INPUT for an invalid stream, STATUS_FAILURE if memory runs out, or the error of source->read. */
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
+/* The same for a complete stream in memory: of the module for browsers, and of fuzzers. */
+status mesh_stream_read_bytes(const void *bytes, size_t size, const mesh_limits *limits, mesh_import **out,
+                              diagnostic *why);
 
 /* Points as text: a mesh without triangles and materials. Each line has the three coordinates of a point, separated by
  * blanks or commas; empty lines, and what follows a #, are skipped. text[size] is 0. STATUS_BAD_INPUT with line and
