@@ -21,6 +21,20 @@ static void check_square(mesh_import *got, const char *what)
     mesh_import_destroy(got);
 }
 
+/* Each text is the square, and so it is with \r\n and with \r at the ends of its lines. */
+static void check_squares(const char *name, const char *const *texts, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        check_square(read_text(name, texts[i]), texts[i]);
+        for (int end = 0; end < 2; end++) {
+            bytes b = {0};
+            for (const char *c = texts[i]; *c; c++)
+                *c == '\n' ? add(&b, "\r\n", end ? 1 : 2) : add(&b, c, 1);
+            check_square(read_bytes(name, b), texts[i]);
+        }
+    }
+}
+
 /* --- PLY --- */
 
 #define XYZ "property float x\nproperty float y\nproperty float z\n"
@@ -49,15 +63,7 @@ static void ply_texts_are_read_in_every_form(void **state)
         ASCII "element vertex 6\n" XYZ FACE "end_header\n9 9 9\n" CORNERS "8 8 8\n4 1 2 3 4\n", /* unused vertices */
         ASCII "element vertex 4\n" XYZ FACE "element edge 1\nproperty int a\nend_header\n" CORNERS "4 0 1 2 3\n5\n",
     };
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        check_square(read_text("form.ply", texts[i]), texts[i]);
-        for (int end = 0; end < 2; end++) { /* the same with \r\n and with \r */
-            bytes b = {0};
-            for (const char *c = texts[i]; *c; c++)
-                *c == '\n' ? add(&b, "\r\n", end ? 1 : 2) : add(&b, c, 1);
-            check_square(read_bytes("form.ply", b), texts[i]);
-        }
-    }
+    check_squares("form.ply", texts, sizeof texts / sizeof *texts);
 }
 
 static void add_number(bytes *b, double value, int size, bool big)
@@ -200,11 +206,7 @@ static void triangle_strips_are_read(void **state)
 static void wrong_ply_files_are_refused_with_their_place(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        long line;
-        const char *words;
-    } cases[] = {
+    static const refusal cases[] = {
         {"no ply\n", 1, "begins with the line 'ply'"},
         {"ply\nelement vertex 3\nend_header\n", 3, "names no format"},
         {"ply\nformat klingon 1.0\n", 2, "the format is not ascii"},
@@ -231,8 +233,7 @@ static void wrong_ply_files_are_refused_with_their_place(void **state)
         {ASCII FACE "element vertex 4\n" XYZ "end_header\n4 0 1 2 9\n" CORNERS, 10, "face 1 refers to vertex 9"},
         {ASCII "element vertex 4\n" XYZ "end_header\n" CORNERS, 0, "no triangles"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        refuse_at("wrong.ply", cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].words);
+    refuse_texts("wrong.ply", cases, sizeof cases / sizeof *cases);
     static const double places[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, (double)NAN, 0}, {0, 1, 0}};
     static const double good[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
     bytes b = ply_of(false, 4, false, "\n", places, 4); /* 175 bytes of header */
@@ -277,15 +278,7 @@ static void stl_texts_are_read_in_every_form(void **state)
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n"
         "endfacet\nendsolid a\n", /* four corners */
     };
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        check_square(read_text("form.stl", texts[i]), texts[i]);
-        for (int end = 0; end < 2; end++) {
-            bytes b = {0};
-            for (const char *c = texts[i]; *c; c++)
-                *c == '\n' ? add(&b, "\r\n", end ? 1 : 2) : add(&b, c, 1);
-            check_square(read_bytes("form.stl", b), texts[i]);
-        }
-    }
+    check_squares("form.stl", texts, sizeof texts / sizeof *texts);
     mesh_import *got = read_text("d.stl", "solid\n" FACET("0.1 .3 -1e-300", "1 0 0", "0 1 0") "endsolid\n");
     assert_vec3(corner(got->mesh, 0, 0), 0.1, 0.3, -1e-300);
     mesh_import_destroy(got);
@@ -323,11 +316,7 @@ static void binary_stl_files_are_read_in_every_form(void **state)
 static void wrong_stl_files_are_refused_with_their_place(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        long line;
-        const char *words;
-    } cases[] = {
+    static const refusal cases[] = {
         {"this is not a mesh at all\n", 0, "it does not begin with 'solid'"},
         {"solid a\n", 2, "the text ends where 'facet' or 'endsolid' is expected"},
         {"solid a\nendsolid a\n", 0, "no triangles"},
@@ -343,8 +332,7 @@ static void wrong_stl_files_are_refused_with_their_place(void **state)
          "'endloop' where 'vertex'"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1", 5, "the text ends where a finite number"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        refuse_at("wrong.stl", cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].words);
+    refuse_texts("wrong.stl", cases, sizeof cases / sizeof *cases);
     bytes b = square_stl("", 0);
     refuse_at("cut.stl", b.at, 140, 0, "byte 140: the file ends within facet 2 of 2");
     refuse_at("short.stl", b.at, 83, 0, "shorter than a binary file's 84 bytes");

@@ -100,11 +100,7 @@ static void numbers_are_the_nearest_doubles(void **state)
 static void what_is_wrong_is_refused_with_its_line(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text;
-        long line;
-        const char *words;
-    } cases[] = {
+    static const refusal cases[] = {
         {THREE "f 1 2 5\n", 4, "a face refers to vertex 5, but the file has 3"},
         {THREE "\n\nf 1 2 3\nf -4 -2 -1\n", 7, "a face refers to vertex 0, but the file has 3"},
         {THREE "f 1/1 2/1 3/1\n", 4, "texture coordinate 1, but the file has 0"},
@@ -134,8 +130,7 @@ static void what_is_wrong_is_refused_with_its_line(void **state)
         {"mtllib bad.mtl\n" THREE "f 1 2 3\n", 1, "needs the file 'bad.mtl', where in line 3 Kd has 'x'"},
     };
     put_text("bad.mtl", "Kd y\r\nnewmtl a\rKd x 0 0\n");
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        refuse_at("wrong.obj", cases[i].text, strlen(cases[i].text), cases[i].line, cases[i].words);
+    refuse_texts("wrong.obj", cases, sizeof cases / sizeof *cases);
 }
 
 /* --- polygons --- */
