@@ -109,13 +109,16 @@ static const char *read_numbers(obj_part *o, const char *p, const form *f, doubl
     return count < f->least ? fail(o, p, f->few, f->remedy) : next_line(o, p);
 }
 
-static const char *read_place(obj_part *o, const char *p)
+/* Reads a place or a normal into its list. */
+static const char *read_vector(obj_part *o, const char *p, const form *f, double (**list)[3], size_t *room,
+                               size_t *count)
 {
     double v[8];
-    if (!ROOM_FOR_ONE(o, places, place_room, place_count))
+    if (*count == *room && !GROW(*list, *room, *count + 1))
         return no_memory(o);
-    p = read_numbers(o, p, &place_form, v);
-    memcpy(o->places[o->place_count++], v, sizeof *o->places);
+    p = read_numbers(o, p, f, v);
+    if (p)
+        memcpy((*list)[(*count)++], v, sizeof **list);
     return p;
 }
 
@@ -126,16 +129,6 @@ static const char *read_uv(obj_part *o, const char *p)
         return no_memory(o);
     p = read_numbers(o, p, &uv_form, v);
     memcpy(o->uvs[o->uv_count++], v, sizeof *o->uvs);
-    return p;
-}
-
-static const char *read_normal(obj_part *o, const char *p)
-{
-    double v[8];
-    if (!ROOM_FOR_ONE(o, normals, normal_room, normal_count))
-        return no_memory(o);
-    p = read_numbers(o, p, &normal_form, v);
-    memcpy(o->normals[o->normal_count++], v, sizeof *o->normals);
     return p;
 }
 
@@ -274,13 +267,13 @@ static const char *read_line(obj_part *o, const char *p)
     while (is_blank(*p))
         p++;
     if ((rest = after(p, "v")))
-        return read_place(o, rest);
+        return read_vector(o, rest, &place_form, &o->places, &o->place_room, &o->place_count);
     if ((rest = after(p, "f")) || (rest = after(p, "fo"))) /* fo: an older name */
         return read_face(o, rest);
     if ((rest = after(p, "vt")))
         return read_uv(o, rest);
     if ((rest = after(p, "vn")))
-        return read_normal(o, rest);
+        return read_vector(o, rest, &normal_form, &o->normals, &o->normal_room, &o->normal_count);
     if ((rest = after(p, "usemtl")))
         return read_names(o, rest, false);
     if ((rest = after(p, "mtllib")))
