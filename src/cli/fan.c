@@ -130,7 +130,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     if (result == STATUS_OK) {
         scene_input_note_tree(&request->input, s);
         if (request->depth >= 0)
-            probe_limit_depth(p, (int)request->depth);
+            probe_limit_depth(p, (int)request->depth, "lower --depth, or raise render.min_weight");
         result = trace_fan(request, s, p, why);
     }
     probe_destroy(p);

@@ -13,6 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const char smaller_tree[] = "use a smaller depth or a larger min_fraction";
+
 /* Creates a probe without lights, so that no shadow rays are traced. */
 static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa level, probe **out, diagnostic *why)
 {
@@ -26,7 +28,7 @@ static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa
         code = probe_create(unlit, level, out, why);
     }
     if (code == STATUS_OK) {
-        probe_limit_depth(*out, (int)b->depth);
+        probe_limit_depth(*out, (int)b->depth, smaller_tree);
         probe_use_one_wavelength(*out);
     }
     scene_destroy(unlit);
@@ -57,9 +59,9 @@ static status visit_ray(beam_work *w, const beam *b, const ray_axes *a, const be
     start_of(b, a, ray, &origin, &direction);
     const status code = b->branches ? probe_ray(p, origin, direction, &w->tree, w->why)
                                     : probe_path(p, origin, direction, -1, &w->tree, w->why);
-    if (code == STATUS_BAD_INPUT && w->tree.count >= PROBE_NODES_MAX) /* render.depth and min_weight are ignored */
-        return diagnose(w->why, code, "use a smaller depth or a larger min_fraction",
-                        "a ray of beam '%s' has more than %d segments", b->name, (int)PROBE_NODES_MAX);
+    if (code == STATUS_BAD_INPUT && w->tree.count >= PROBE_NODES_MAX)
+        return diagnose(w->why, code, smaller_tree, "a ray of beam '%s' has more than %d segments", b->name,
+                        (int)PROBE_NODES_MAX);
     if (code != STATUS_OK)
         return code;
     w->segments += w->tree.count;

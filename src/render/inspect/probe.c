@@ -13,6 +13,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     probe *p = calloc(1, sizeof *p);
     if (!p)
         return out_of_memory(why);
+    p->remedy = "lower render.depth, or raise render.min_weight";
     p->setting = scene_clone(s);
     p->rays = tracer_create(level);
     status code = p->setting && p->rays ? STATUS_OK : out_of_memory(why);
@@ -68,9 +69,10 @@ void probe_use_one_wavelength(probe *p)
     }
 }
 
-void probe_limit_depth(probe *p, int depth)
+void probe_limit_depth(probe *p, int depth, const char *remedy)
 {
     p->frame_plan->render.depth = depth;
+    p->remedy = remedy;
 }
 
 void probe_destroy(probe *p)

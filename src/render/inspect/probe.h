@@ -88,8 +88,9 @@ void ray_tree_release(ray_tree *tree);
 typedef struct probe probe;
 
 status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
-/* Replaces render.depth; values above DEPTH_TREE_MAX are only for paths. */
-void probe_limit_depth(probe *p, int depth);
+/* Replaces render.depth; values above DEPTH_TREE_MAX are only for paths. remedy: what errors advise for too large a
+ * tree; borrowed. */
+void probe_limit_depth(probe *p, int depth, const char *remedy);
 void probe_destroy(probe *p);
 
 /* From this call on, absorption by wavelength, metals and thin films are evaluated at render.lambda_nm for all

@@ -89,12 +89,11 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
 {
     TRY(cancel_check(why));
     if (tree->count >= PROBE_NODES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or raise render.min_weight",
-                        "the tree has more than %d rays", (int)PROBE_NODES_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, p->remedy, "the tree has more than %d rays", (int)PROBE_NODES_MAX);
     if (tree->count == tree->capacity)
-        TRY(memory_budget_check(2 * tree->count * sizeof *tree->node, "lower render.depth", why, "the tree of rays"));
+        TRY(memory_budget_check(2 * tree->count * sizeof *tree->node, p->remedy, why, "the tree of rays"));
     if (!GROW(tree->node, tree->capacity, tree->count + 1))
-        return diagnose(why, STATUS_FAILURE, "lower render.depth", "out of memory");
+        return diagnose(why, STATUS_FAILURE, p->remedy, "out of memory");
     *at = tree->count++;
     tree->node[*at] = (ray_node){.kind = kind,
                                  .end = RAY_END_SKY,

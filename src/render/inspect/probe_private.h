@@ -9,8 +9,9 @@ struct probe {
     scene *setting; /* a copy of the caller's scene */
     plan *frame_plan;
     tracer *rays;
-    film *img;     /* one pixel */
-    bool spectral; /* the scene's film is spectral */
+    film *img;          /* one pixel */
+    bool spectral;      /* the scene's film is spectral */
+    const char *remedy; /* against too large a tree */
 };
 
 /* One record of a ray queue. */
