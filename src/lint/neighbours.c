@@ -1,6 +1,7 @@
 /* Notes pairs of solids that overlap with equal priority, or leave a narrow gap, found along a lattice of lines through
  * both. A finding is confirmed at nearby points before it becomes a note: touching is not overlapping, and the closest
  * point of two curved surfaces is not a gap. */
+#include "base/array.h"
 #include "base/cancel.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/regions/instance_set.h"
@@ -336,7 +337,8 @@ static void note_gap(const pair *p, double gap)
                 "make them touch exactly or overlap (the higher priority then decides), or move them apart",
                 "the gap between %s and %s is about %.2g, less than a thousandth of the thickness of %s "
                 "(%.3g): it acts as a thin film",
-                first->name, second->name, gap, thin->owner->name, thin->thickness);
+                first->name, first == second ? "another copy of it" : second->name, gap, thin->owner->name,
+                thin->thickness);
 }
 
 /* Two half-spaces intersect unless their planes are parallel, and each is outside the other. */
@@ -350,7 +352,8 @@ static bool planes_overlap(const pair *p)
     return vec3_dot(up_a, up_b) > -1.0 + 1e-9 || distance < -OVERLAP_FRACTION * fmax(1.0, fmax(a->extent, b->extent));
 }
 
-static void examine_pair(pair *p)
+/* True if there is a note. */
+static bool examine_pair(pair *p)
 {
     bool overlap = false;
     double gap = 0.0;
@@ -364,11 +367,12 @@ static void examine_pair(pair *p)
         overlap = p->overlaps && planes_overlap(p);
     }
     if (cancel_asked())
-        return; /* some lines were not examined */
+        return false; /* some lines were not examined */
     if (overlap)
         note_overlap(p);
     else if (gap > 0.0)
         note_gap(p, gap);
+    return overlap || gap > 0.0;
 }
 
 /* Whether medium or absorption differ. */
@@ -404,7 +408,7 @@ static bool prepare_pair(const lint_input *input, const neighbour *a, const neig
                         fmin(a->box.high.z, b->box.high.z) + pad);
     p->extent = fmax(fmax(fmax(fabs(p->low.x), fabs(p->low.y)), fmax(fabs(p->low.z), fabs(p->high.x))),
                      fmax(fabs(p->high.y), fabs(p->high.z)));
-    p->overlaps = a->owner->priority == b->owner->priority && media_differ(input->probe, a, b);
+    p->overlaps = a->owner != b->owner && a->owner->priority == b->owner->priority && media_differ(input->probe, a, b);
     p->gaps = shows(a->of) && shows(b->of);
     return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;
 }
@@ -419,19 +423,45 @@ static size_t count_pairs(const lint_input *input, const neighbour *all, int cou
     return pairs;
 }
 
-static void examine_all(const lint_input *input, const neighbour *all, int count, float *gap, double *middle)
+/* Solids with a note: of many copies of a solid, the first pair has it. */
+typedef struct noted_pair {
+    const solid *a, *b;
+} noted_pair;
+
+typedef struct noted_pairs {
+    noted_pair *list;
+    size_t count, room;
+} noted_pairs;
+
+static bool is_noted(const noted_pairs *n, const solid *a, const solid *b)
+{
+    for (size_t i = 0; i < n->count; i++)
+        if ((n->list[i].a == a && n->list[i].b == b) || (n->list[i].a == b && n->list[i].b == a))
+            return true;
+    return false;
+}
+
+static status examine_all(const lint_input *input, const neighbour *all, int count, float *gap, double *middle,
+                          noted_pairs *noted, diagnostic *why)
 {
     const size_t pairs = count_pairs(input, all, count);
     for (int i = 0; i < count && !cancel_asked(); i++)
         for (int k = i + 1; k < count; k++) {
+            const solid *a = all[i].owner, *b = all[k].owner;
             pair p;
-            if (!prepare_pair(input, &all[i], &all[k], &p) || (p.overlaps && is_covered(input, &all[i], &all[k])))
+            if (!prepare_pair(input, &all[i], &all[k], &p) || (p.overlaps && is_covered(input, &all[i], &all[k])) ||
+                is_noted(noted, a, b))
                 continue;
             p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs))));
             p.gap = gap;
             p.middle = middle;
-            examine_pair(&p);
+            if (!examine_pair(&p))
+                continue;
+            if (!GROW(noted->list, noted->room, noted->count + 1))
+                return out_of_memory(why);
+            noted->list[noted->count++] = (noted_pair){a, b};
         }
+    return cancel_check(why);
 }
 
 status lint_neighbours(const lint_input *input, diagnostic *why)
@@ -443,20 +473,18 @@ status lint_neighbours(const lint_input *input, diagnostic *why)
     float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
     double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);
     const bool allocated = all && gap && middle;
+    noted_pairs noted = {0};
     int count = 0;
-    for (int priority_index = 1; allocated && priority_index <= a->region_count; priority_index++) {
-        const region *b = &a->regions[priority_index];
-        const solid *owner = lint_solid(input, priority_index);
-        const solid_shape shape = scene_loaded_shape(input->original, owner);
-        if ((shape.mesh && !shape.mesh->closed) || shape.points)
-            continue; /* an open mesh contains nothing; copies of one solid are not compared */
-        all[count++] =
-            (neighbour){b, owner, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
+    for (int r = 1; allocated && r <= a->region_count; r++) {
+        const solid_shape shape = scene_geometry_shape(a, r);
+        if (!shape.mesh || shape.mesh->closed) /* an open mesh contains nothing */
+            all[count++] = (neighbour){&a->regions[r], lint_solid(input, r), shape_world_box(&shape),
+                                       shape_of(&shape)->thickness(&shape), r};
     }
-    if (allocated)
-        examine_all(input, all, count, gap, middle);
+    const status code = allocated ? examine_all(input, all, count, gap, middle, &noted, why) : out_of_memory(why);
     free(all);
     free(gap);
     free(middle);
-    return allocated ? cancel_check(why) : out_of_memory(why);
+    free(noted.list);
+    return code;
 }

@@ -7,8 +7,10 @@
 
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
+#include "lint/lint.h"
 #include "package_fixture.h"
 #include "random_stream.h"
+#include "render/inspect/probe.h"
 #include "scene/assets/mesh_stream.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
@@ -158,6 +160,64 @@ static void a_cloud_is_where_its_solids_are(void **state)
             assert_true(placed_farthest(&single, d) <= placed_farthest(&placed, d) + 1e-12);
         }
     }
+    scene_destroy(s);
+}
+
+/* --- notes, and media of points --- */
+
+/* The notes on overlaps and gaps. */
+typedef struct last_note {
+    int count;
+    char text[NOTE_TEXT_MAX];
+} last_note;
+
+static void keep_note(void *context, const scene_note *note)
+{
+    last_note *last = context;
+    if (!strstr(note->text, "overlap") && !strstr(note->text, "gap"))
+        return;
+    last->count++;
+    memcpy(last->text, note->text, sizeof last->text);
+}
+
+/* Boxes of 1 around the points, and around the origin: one note for any number of pairs. */
+static void a_cloud_has_the_notes_of_its_solids(void **state)
+{
+    (void)state;
+    static const struct {
+        vec3 points[3];
+        const char *words; /* NULL: no note */
+    } cases[] = {{{{0, 2, 0}, {2, 0, 0}, {-2, 0, 0}}, NULL},
+                 {{{0, 2, 0}, {0.9, 0, 0}, {-0.9, 0, 0}}, "drop and last overlap with equal priority"},
+                 {{{0, 2, 0}, {1.0005, 0, 0}, {-1.0005, 0, 0}}, "the gap between drop and last is about 0.0005"},
+                 {{{1.0005, 2, 0}, {0, 2, 0}, {-1.0005, 2, 0}}, "the gap between drop and another copy of it"},
+                 {{{0.9, 2, 0}, {0, 2, 0}, {-0.9, 2, 0}}, NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        put_points(cases[i].points, 3);
+        scene *s = cloud_of("shape: box, size: [1, 1, 1], material: glass, ior: 1.3");
+        last_note last = {.count = 0};
+        diagnostic why = {.what = ""};
+        worked(lint_scene(s, isa_best(), &(note_sink){keep_note, &last}, &why), &why);
+        if (last.count != (cases[i].words != NULL) || (cases[i].words && !strstr(last.text, cases[i].words)))
+            fail_msg("case %zu: %d notes, '%s'", i, last.count, last.text);
+        scene_destroy(s);
+    }
+}
+
+static void points_are_in_the_medium_of_a_copy(void **state)
+{
+    (void)state;
+    const vec3 points[] = {{-2, 0, 0}, {2, 0, 0}};
+    put_points(points, 2);
+    scene *s = cloud_of("shape: sphere, radius: 0.5, material: glass, ior: 1.3");
+    probe *p = NULL;
+    diagnostic why = {.what = ""};
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    assert_int_equal(probe_medium_at(p, points[0]), 1);
+    assert_int_equal(probe_medium_at(p, points[1]), 1);
+    assert_int_equal(probe_medium_at(p, vec3_make(0, 0, 0)), 2);
+    assert_int_equal(probe_medium_at(p, vec3_make(0, 2, 0)), RAY_OUTSIDE);
+    probe_destroy(p);
     scene_destroy(s);
 }
 
@@ -316,6 +376,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cloud_has_the_film_of_its_solids),
         cmocka_unit_test(a_cloud_is_where_its_solids_are),
+        cmocka_unit_test(a_cloud_has_the_notes_of_its_solids),
+        cmocka_unit_test(points_are_in_the_medium_of_a_copy),
         cmocka_unit_test(points_are_three_numbers_a_line),
         cmocka_unit_test(bad_files_have_a_place),
         cmocka_unit_test(points_are_limited),

@@ -177,12 +177,22 @@ const char *probe_medium_name(const probe *p, int at)
     return name ? name : s->solids[at].name;
 }
 
+/* Whether only the scene geometry can test points: against meshes and the copies of a solid. */
+static bool needs_geometry(const probe *p)
+{
+    const scene *s = p->setting;
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (scene_points_of(s, &s->solids[i]))
+            return true;
+    return p->frame_plan->geometry->meshes;
+}
+
 int probe_medium_at(const probe *p, vec3 point)
 {
     const scene *s = p->setting;
     const scene_geometry *g = p->frame_plan->geometry;
     int best = RAY_OUTSIDE;
-    if (g->meshes) /* only the scene geometry can test points against meshes */
+    if (needs_geometry(p))
         return g->regions[scene_geometry_priority_index(g, scene_geometry_inside(g, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
