@@ -114,6 +114,21 @@ static void rows_stay_excluded_when_the_grid_changes(void **state)
     study_destroy(s);
 }
 
+/* A list that a person wrote names a row as rows.csv does, whatever the grid is now. */
+static void a_written_list_names_rows_of_the_file(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, text);
+    fixture_run(f, s);
+    study_destroy(s);
+    fixture_write(f, "results/test/excluded.csv", "cell,repetition,reason\n1,2,depth 1\n");
+    s = fixture_study(f,
+                      "study: test\nscene: scene.yaml\ngrid: [{render.depth: [1, 0]}]\nrepetitions: 3\nwarmups: 1\n");
+    assert_string_equal(summary_field(f, s, 0, "excluded"), "1");
+    assert_string_equal(summary_field(f, s, 1, "excluded"), "0");
+    study_destroy(s);
+}
+
 /* A cell's number in rows.csv is that of the grid at the time; the same number may now be another row's. */
 static void a_number_names_the_row_of_the_file(void **state)
 {
@@ -230,6 +245,7 @@ int main(void)
         CASE(a_row_is_left_out_and_stays),
         CASE(the_check_names_a_row),
         CASE(rows_stay_excluded_when_the_grid_changes),
+        CASE(a_written_list_names_rows_of_the_file),
         CASE(a_number_names_the_row_of_the_file),
         CASE(rows_stay_excluded_after_a_merge),
         CASE(other_references_are_refused),

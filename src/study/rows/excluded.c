@@ -13,8 +13,8 @@
 
 enum { REASON_LENGTH = 500 };
 
-/* The columns that identify a row; a list that a person wrote may lack the first four. `cell` is a number in the grid
- * at the time of the exclusion; `identity` is the same in every grid. */
+/* The columns that identify a row; a list that a person wrote may lack the first four. `cell` is the row's number in
+ * rows.csv, by the grid at that time; `identity` is the same in every grid. */
 static const char *const keys[] = {"checksum", "identity", "run", "process", "cell", "repetition"};
 enum { CHECKSUM, IDENTITY, RUN, PROCESS, CELL, REPETITION, KEY_COUNT };
 
@@ -96,16 +96,16 @@ static bool agrees(const excluded *list, size_t line, const row_ref *row, int ke
 
 static bool names(const excluded *list, size_t line, const row_ref *row)
 {
-    int64_t repetition = -1, cell = -1;
+    int64_t repetition = -1, listed = -1, cell = -1;
     bool decided;
     if (agrees(list, line, row, CHECKSUM, &decided) && decided)
         return true;
     number_parse_int(field_of(list, line, REPETITION), &repetition);
-    number_parse_int(field_of(list, line, CELL), &cell);
     if (repetition != row->repetition || !agrees(list, line, row, RUN, &decided) ||
         !agrees(list, line, row, PROCESS, &decided) || !agrees(list, line, row, IDENTITY, &decided))
         return false;
-    return decided || cell == (int64_t)row->cell;
+    number_parse_int(field_of(list, line, CELL), &listed);
+    return decided || (number_parse_int(row_field(row, keys[CELL]), &cell) && listed == cell);
 }
 
 bool excluded_has(const excluded *list, const row_ref *row)
@@ -189,12 +189,10 @@ static status append(const study *s, const char *results, const excluded *list, 
     struct timespec now = {0};
     table *to = NULL;
     csv_buffer line = {0};
-    for (int key = CHECKSUM; key < CELL; key++) {
+    for (int key = CHECKSUM; key <= CELL; key++) {
         const char *field = row_field(row, keys[key]);
         csv_text(&line, is_known(field) ? field : NULL);
     }
-    snprintf(number, sizeof number, "%zu", row->cell);
-    csv_text(&line, number);
     snprintf(number, sizeof number, "%ld", row->repetition);
     csv_text(&line, number);
     csv_text(&line, reason);

@@ -12,8 +12,9 @@ typedef struct excluded excluded;
 status excluded_read(const study *s, const char *results, excluded **out, diagnostic *why);
 void excluded_destroy(excluded *list);
 
-/* Whether the row is excluded. A line names its row by its checksum, or by cell (by identity if the rows have one),
- * run, process and repetition; a list that a person wrote may have only cell and repetition. */
+/* Whether the row is excluded. A line names its row by its checksum, or by its cell's identity, run, process
+ * and repetition. A list that a person wrote may have only cell and repetition: then a line is for every row that has
+ * these numbers in rows.csv, whatever the grid is now. */
 bool excluded_has(const excluded *list, const row_ref *row);
 
 /* Whether a row counts in summaries, and why not: a warm-up; its film is not the expected one; a person excluded it. */
