@@ -92,22 +92,19 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
     }
 }
 
-/* Sets *shape to the solid's shape with the triangles of its mesh, and source->tree to their hierarchy. */
-static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, region_source *source, diagnostic *why)
+/* Sets source->tree to the hierarchy over the triangles of the shape of source. */
+static status fetch_tree(const scene *s, size_t i, plan *p, region_source *source, diagnostic *why)
 {
     const solid *one = &s->solids[i];
     const mesh_entry *m = scene_find_mesh(s, one->mesh);
     if (!m || !m->data)
         return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the mesh is not loaded", one->name);
-    *shape = one->shape;
-    shape->mesh = m->data;
-    source->shape = shape;
     const status code = tree_of(s, i, p, m->data, &source->tree, why);
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= !(s->solids[k].visible && solid_shows_mesh(&s->solids[k], one->mesh));
     if (code == STATUS_OK)
-        report_mesh(p, m, shape, source->tree, first);
+        report_mesh(p, m, source->shape, source->tree, first);
     return code;
 }
 
@@ -139,7 +136,7 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                             .reflects = p->basic && !scene_has_constant_weights(&s->render),
                             .solid = i};
     if (is_mesh)
-        TRY(fetch_mesh(s, (size_t)i, p, shape, &source, why));
+        TRY(fetch_tree(s, (size_t)i, p, &source, why));
     if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
         source.further_media = (int64_t)(s->solid_count + *copies);
     *copies += solid_shape_count(source.shape);
