@@ -83,12 +83,13 @@ export function createRow(first, lab, { onabout, long } = {}) {
   let settled = 0;
   let forget = 0;
 
+  const kind = first.name === 'points' ? 'mesh' : first.name; /* of the objects that it may name */
   const control = controlOf(first, {
     name: `${object} ${labelOf(first.name)}`,
     describedby: meaning.id,
     send,
     slider: () => known.slider,
-    names: (lab.scene?.objects || []).filter((each) => each.kind === first.name).map((each) => each.name),
+    names: (lab.scene?.objects || []).filter((each) => each.kind === kind).map((each) => each.name),
   });
   label.id = unique('label');
   if (control.single) label.htmlFor = control.single.id;
