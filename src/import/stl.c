@@ -224,7 +224,7 @@ static status read_any(stl *s)
             return read_text(s);
         if (s->size < HEADER)
             return diagnose(s->why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
-                            "this is not a file of format STL: it does not begin with 'solid', and is shorter than a "
+                            "this is not an STL file: it does not begin with 'solid', and is shorter than a "
                             "binary file's %d bytes",
                             (int)HEADER);
     }

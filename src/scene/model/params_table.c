@@ -304,11 +304,11 @@ static const param table[] = {
 
     {PARAM_MESH, "generate", PARAM_CHOICE, "", 0, 0, false, "file", "generated shape; file: read the mesh from a file",
      source_words, OF(mesh_entry, source)},
-    {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "", "OBJ, PLY, STL or glTF file, relative to the scene file",
-     NULL, OF(mesh_entry, path)},
+    {PARAM_MESH, "file", PARAM_PATH, "", 0, 0, false, "",
+     "OBJ, PLY, STL or glTF file, or a file of points (.xyz), relative to the scene file", NULL, OF(mesh_entry, path)},
     CHOICE(PARAM_MESH, mesh_entry, handedness, handedness_words, "file",
-           "axes of the file; from right-handed ones z changes its sign, because the world is left-handed; file: "
-           "right-handed, or left-handed for points"),
+           "axes of the file; the z of right-handed ones changes its sign, because the world is left-handed; file: "
+           "right, but left for a file of points"),
     ROW(PARAM_MESH, "count", PARAM_INT, "", 1, 100000000, false, "10000",
         "number of triangles of sparse and dense; of sphere: the nearest 20 f^2", NULL, OF(mesh_entry, count), DECADES),
     INTEGER(PARAM_MESH, mesh_entry, level, "", 0, 11, "4",
@@ -586,7 +586,8 @@ static const param table[] = {
      SHAPE(shape.size)},
     {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh)},
     {PARAM_SOLID, "points", PARAM_WORD, "", 0, 0, false, "",
-     "name of a mesh: a copy of the solid is at each of its vertices, along the solid's own axes from its position",
+     "name of a mesh with a file of points (.xyz): a copy of the solid is at each of them, along the solid's own axes "
+     "from its position",
      NULL, SHAPE(points)},
     {PARAM_SOLID, "scale", PARAM_VECTOR, "", -FAR, FAR, false, "1,1,1",
      "of a mesh, or of points: along the solid's own axes; a negative number mirrors", NULL, SHAPE(shape.scale),
