@@ -55,18 +55,21 @@ static bool split_path(const char *path, path_words *words)
     return true;
 }
 
-/* All valid first words of paths of this scene, for suggestions; newly allocated, or NULL. */
-static const char **group_words(const scene *s, size_t *count)
+/* The valid first word of a path of this scene that is nearest to a word; *nearest is NULL if none is near. */
+static status nearest_group(const scene *s, const char *word, const char **nearest, diagnostic *why)
 {
     size_t room = 0, used = 0;
     for (int g = 0; g < PARAM_GROUP_COUNT; g++)
         room += param_place_group_size(s, (param_group)g);
     const char **words = malloc(room * sizeof *words);
-    for (int g = 0; words && g < PARAM_GROUP_COUNT; g++)
+    if (!words)
+        return out_of_memory(why);
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
         for (size_t i = 0; i < param_place_group_size(s, (param_group)g); i++)
             words[used++] = param_place_group_name(s, (param_group)g, i);
-    *count = used;
-    return words;
+    *nearest = suggest_word(word, words, used);
+    free(words);
+    return STATUS_OK;
 }
 
 static bool find_group(const scene *s, const char *word, param_place *out)
@@ -109,11 +112,8 @@ static const param *nearest_setting(const scene *s, const char *word)
 
 static status unknown_group(const scene *s, const path_words *path, diagnostic *why)
 {
-    size_t count;
-    const char **words = group_words(s, &count);
-    if (!words)
-        return out_of_memory(why);
-    const char *nearest = suggest_word(path->group, words, count);
+    const char *nearest;
+    TRY(nearest_group(s, path->group, &nearest, why));
     char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, "
                        "beam, material or solid, a dot "
                        "and a parameter";
@@ -123,7 +123,6 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
                  path->name ? path->name : "");
     else if (setting)
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", param_group_name(setting->group), setting->name);
-    free(words);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the scene has no object '%.80s'", path->group);
 }
 
@@ -203,15 +202,11 @@ status param_place_find_object(const scene *s, const char *name, param_place *ou
     *out = (param_place){.element = -1};
     if (find_group(s, name, out))
         return STATUS_OK;
-    size_t count;
-    const char **words = group_words(s, &count);
-    if (!words)
-        return out_of_memory(why);
-    const char *nearest = suggest_word(name, words, count);
+    const char *nearest;
+    TRY(nearest_group(s, name, &nearest, why));
     char remedy[SCENE_NAME_MAX + 80] = "give the name of a mesh, texture, light, beam, material or solid";
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
-    free(words);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the scene has no object '%.80s'", name);
 }
 
