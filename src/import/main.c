@@ -95,7 +95,8 @@ static status convert(const request *req, diagnostic *why)
         TRY(flatten(req, scene, &flat, why));
         break;
     case FILE_UNKNOWN:
-        return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
+        return diagnose_at(why, req->path, STATUS_BAD_INPUT,
+                           "use a file that ends in .obj, .ply, .stl, .gltf or .glb, or in .xyz for points",
                            "unknown mesh format");
     }
     return flat_write(&flat, stdout, why);

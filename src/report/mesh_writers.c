@@ -26,7 +26,9 @@ static void print_vector(FILE *stream, const char *name, vec3 v)
 static void print_hole(FILE *stream, const mesh *m)
 {
     const mesh_hole *h = &m->hole;
-    if (m->triangle_count == 0 || h->sharing == 0)
+    if (m->triangle_count == 0)
+        fputs("closed     no: it has points only\n", stream);
+    else if (h->sharing == 0)
         fputs("closed     no: every triangle has zero area\n", stream);
     else if (h->sharing == 2)
         fprintf(stream, "closed     no: inconsistent orientation at the edge from vertex %lu to %lu of triangle %zu\n",
@@ -40,7 +42,7 @@ void mesh_rows_text(FILE *stream, const mesh *m)
 {
     char number[NUMBER_TEXT_MAX];
     fprintf(stream, "triangles  %zu\nvertices   %zu\n", m->triangle_count, m->vertex_count);
-    if (m->triangle_count) {
+    if (m->bounds.low.x <= m->bounds.high.x) {
         print_vector(stream, "from", m->bounds.low);
         print_vector(stream, "to", m->bounds.high);
     }

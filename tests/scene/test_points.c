@@ -11,6 +11,7 @@
 #include "package_fixture.h"
 #include "random_stream.h"
 #include "render/inspect/probe.h"
+#include "report/mesh_writers.h"
 #include "scene/assets/mesh_stream.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
@@ -240,6 +241,14 @@ static void points_are_three_numbers_a_line(void **state)
     const vec3 expected[] = {{1, 2, 3}, {-1.5e-3, 2, 0.5}, {4, 5, 6}};
     assert_memory_equal(got->mesh->vertices, expected, sizeof expected);
     assert_true(got->mesh->bounds.low.x == -1.5e-3 && got->mesh->bounds.high.z == 6.0);
+    text_writer w;
+    char *described;
+    assert_int_equal(text_writer_open(&w, NULL), STATUS_OK);
+    mesh_rows_text(w.stream, got->mesh);
+    assert_int_equal(text_writer_close(&w, &described, NULL, NULL), STATUS_OK);
+    assert_non_null(strstr(described, "\nto         4 5 6\n"));
+    assert_non_null(strstr(described, "\nclosed     no: it has points only\n"));
+    free(described);
     mesh_import_destroy(got);
 }
 
