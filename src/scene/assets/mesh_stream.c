@@ -298,19 +298,14 @@ static bool ends_line(point_reader *r)
 
 static status read_coordinate(point_reader *r, double *out)
 {
-    char word[64];
     if (ends_line(r))
         return point_error(r, "give three numbers: x y z", "a coordinate of the point is missing");
-    const size_t length = strcspn(r->at, " \t\r\n,#");
-    if (length < sizeof word) {
-        memcpy(word, r->at, length);
-        word[length] = 0;
-    }
-    if (length >= sizeof word || !number_parse_real(word, out))
+    const char *end = r->at;
+    if (!number_scan(&end, out) || !strchr(" \t\r\n,#", *end))
         return point_error(r, "give three numbers: x y z", "this is not a finite number");
     if (!(fabs(*out) <= POINT_FAR))
         return point_error(r, "use coordinates between -1000000 and 1000000", "the coordinate is too large");
-    r->at += length;
+    r->at = end;
     return STATUS_OK;
 }
 
