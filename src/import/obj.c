@@ -107,27 +107,32 @@ static void copy(void *to, const void *from, size_t bytes)
 }
 
 /* Makes the indices of the part absolute, and checks them. `before`: the part's own statements begin after these; the
- * file has as many as the first part once all are merged. */
-static status resolve(const obj_file *f, obj_part *o, const size_t before[3], const size_t all[3])
+ * file has as many as the first part once all are merged. Texture coordinates and normals that the file lacks are left
+ * out. */
+static status resolve(obj_file *f, obj_part *o, const size_t before[3], const size_t all[3])
 {
     if (!o->relative && (size_t)o->highest.place <= all[0] && (size_t)o->highest.uv <= all[1] &&
         (size_t)o->highest.normal <= all[2])
         return STATUS_OK;
-    static const char *const names[] = {"vertex", "texture coordinate", "normal"};
+    static const char *const names[] = {"", "texture coordinates", "normals"};
     int32_t *const highest[] = {&o->highest.place, &o->highest.uv, &o->highest.normal};
     size_t at = 0;
+    o->highest = (obj_corner){0, 0, 0};
     for (size_t k = 0; k < o->face_count; k++)
         for (const size_t end = at + obj_size(o, k); at < end; at++) {
             int32_t *const parts[] = {&o->corners[at].place, &o->corners[at].uv, &o->corners[at].normal};
             for (int q = 0; q < 3; q++) {
                 if (*parts[q] == 0)
                     continue;
-                const int64_t index = obj_index(*parts[q], before[q]);
+                int64_t index = obj_index(*parts[q], before[q]);
                 if (index < 1 || (size_t)index > all[q]) {
-                    locate(f, o, obj_face_line(o, k));
-                    return diagnose(f->why, STATUS_BAD_INPUT, "repair the file or export it again",
-                                    "a face refers to %s %lld, but the file has %zu", names[q], (long long)index,
-                                    all[q]);
+                    if (q == 0) {
+                        locate(f, o, obj_face_line(o, k));
+                        return diagnose(f->why, STATUS_BAD_INPUT, "repair the file or export it again",
+                                        "a face refers to vertex %lld, but the file has %zu", (long long)index, all[q]);
+                    }
+                    flat_note(f->flat, "faces refer to %s that the file lacks: these are left out", names[q]);
+                    index = 0;
                 }
                 *parts[q] = (int32_t)index;
                 *highest[q] = *parts[q] > *highest[q] ? *parts[q] : *highest[q];

@@ -58,6 +58,24 @@ static const char *fail(obj_part *o, const char *p, const char *fault, const cha
     return NULL;
 }
 
+/* Skips a statement that is not read. \ continues it, unless it is a comment. */
+static const char *skip_statement(obj_part *o, const char *p)
+{
+    const bool comment = *p == '#';
+    const char *end = p;
+    for (;; end++) {
+        while (*end != '\n' && *end != '\r')
+            end++;
+        if (comment || end == p || end[-1] != '\\')
+            return next_line(o, end);
+        const char *next = end + (end[0] == '\r' && end + 1 < o->end && end[1] == '\n' ? 2 : 1);
+        if (next >= o->end)
+            return next_line(o, end);
+        o->line++;
+        end = next - 1;
+    }
+}
+
 static const char *no_memory(obj_part *o)
 {
     o->no_memory = true;
@@ -74,7 +92,7 @@ typedef struct form {
 } form;
 
 static const form place_form = {3,
-                                8,
+                                3,
                                 MESH_WIRE_FAR,
                                 "a vertex has a word that is not a finite number within 1e9",
                                 "a vertex has fewer than three numbers",
@@ -92,9 +110,9 @@ static const form normal_form = {3,
                                  "a normal has fewer than three numbers",
                                  "give three finite numbers"};
 
-/* Reads the numbers of a statement to the end of its line. A place may be followed by a weight or a colour, which are
- * not used: x, y, z are as written. */
-static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[8])
+/* Reads the numbers of a statement. What follows them, such as the weight or colour of a place, is not used: x, y, z are
+ * as written. */
+static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[3])
 {
     int count = 0;
     for (; count < f->most; count++) {
@@ -102,18 +120,17 @@ static const char *read_numbers(obj_part *o, const char *p, const form *f, doubl
         if (is_end(*p))
             break;
         const char *word = p;
-        if (!number_scan(&p, &v[count]) || !(is_blank(*p) || is_end(*p) || *p == '\\') ||
-            (count < 3 && fabs(v[count]) > f->far))
+        if (!number_scan(&p, &v[count]) || !(is_blank(*p) || is_end(*p) || *p == '\\') || fabs(v[count]) > f->far)
             return fail(o, word, f->word, f->remedy);
     }
-    return count < f->least ? fail(o, p, f->few, f->remedy) : next_line(o, p);
+    return count < f->least ? fail(o, p, f->few, f->remedy) : skip_statement(o, skip_blanks(o, p));
 }
 
 /* Reads a place or a normal into its list. */
 static const char *read_vector(obj_part *o, const char *p, const form *f, double (**list)[3], size_t *room,
                                size_t *count)
 {
-    double v[8];
+    double v[3];
     if (*count == *room && !GROW(*list, *room, *count + 1))
         return no_memory(o);
     p = read_numbers(o, p, f, v);
@@ -124,7 +141,7 @@ static const char *read_vector(obj_part *o, const char *p, const form *f, double
 
 static const char *read_uv(obj_part *o, const char *p)
 {
-    double v[8] = {0.0, 0.0};
+    double v[3] = {0.0, 0.0};
     if (!ROOM_FOR_ONE(o, uvs, uv_room, uv_count))
         return no_memory(o);
     p = read_numbers(o, p, &uv_form, v);
@@ -232,24 +249,6 @@ static const char *read_names(obj_part *o, const char *p, bool library)
         return no_memory(o);
     o->events[o->event_count++] = (obj_event){o->face_count, length, p, o->line, library};
     return next_line(o, end);
-}
-
-/* Skips a statement that is not read. \ continues it, unless it is a comment. */
-static const char *skip_statement(obj_part *o, const char *p)
-{
-    const bool comment = *p == '#';
-    const char *end = p;
-    for (;; end++) {
-        while (*end != '\n' && *end != '\r')
-            end++;
-        if (comment || end == p || end[-1] != '\\')
-            return next_line(o, end);
-        const char *next = end + (end[0] == '\r' && end + 1 < o->end && end[1] == '\n' ? 2 : 1);
-        if (next >= o->end)
-            return next_line(o, end);
-        o->line++;
-        end = next - 1;
-    }
 }
 
 /* The end of the keyword at p if a blank follows it; NULL: another one. */

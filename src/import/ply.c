@@ -37,8 +37,8 @@ typedef struct ply_column {
 typedef struct ply {
     const request *req;
     const char *begin;
-    lines text; /* the rest of the file; of a binary file no lines after the header */
-    bool ascii, big, swap;
+    lines text;                      /* the rest of the file; of a binary file no lines after the header */
+    bool ascii, big, swap, by_lines; /* by_lines: each item of a text begins on a line of its own */
     ply_element elements[PLY_ELEMENTS_MAX];
     int element_count;
     const ply_element *vertices, *element; /* element: being read */
@@ -159,7 +159,8 @@ static status read_format(ply *p)
                : bad(p, "the format is not ascii, binary_little_endian or binary_big_endian");
 }
 
-/* Goes past the end of the header's last line, which is as that of its first line: the bytes that follow may be \n. */
+/* Goes past the end of the header's last line. \r\n is one line end unless the first line ends with \r alone: then the
+ * body begins with \n. */
 static void end_header(ply *p)
 {
     const char *first = p->begin;
@@ -167,7 +168,7 @@ static void end_header(ply *p)
         first++;
     while (p->text.at < p->text.end && *p->text.at != '\n' && *p->text.at != '\r')
         p->text.at++;
-    const bool two = *first == '\r' && first[1] == '\n' && p->text.at[0] == '\r' && p->text.at[1] == '\n';
+    const bool two = (*first == '\n' || first[1] == '\n') && p->text.at[0] == '\r' && p->text.at[1] == '\n';
     p->text.at += two ? 2 : 1;
     p->text.at = p->text.at < p->text.end ? p->text.at : p->text.end;
     p->text.line++;
@@ -302,6 +303,35 @@ static status skip(ply *p, const ply_property *of)
     return STATUS_OK;
 }
 
+/* Whether the rest of a text has a line for each item. If not, an item begins after the last number of the one before
+ * it. */
+static bool has_lines(const ply *p)
+{
+    uint64_t items = 0, count = 0;
+    for (int i = 0; i < p->element_count; i++)
+        items += p->elements[i].property_count > 0 ? p->elements[i].count : 0;
+    lines l = p->text;
+    const char *word;
+    size_t length;
+    do
+        count += lines_word(&l, &word, &length);
+    while (lines_next(&l));
+    return count >= items;
+}
+
+/* Leaves out what the line of an item has after the properties of the header. */
+static void end_item(ply *p)
+{
+    const char *rest;
+    if (!p->by_lines)
+        return;
+    const size_t length = lines_rest(&p->text, &rest);
+    if (length > 0)
+        flat_note(p->flat, "lines of the element %.*s have more numbers than the header says: they are left out",
+                  (int)p->element->name_length, p->element->name);
+    p->text.at = rest + length;
+}
+
 /* --- vertices --- */
 
 static status check_number(const ply *p, int number, double value)
@@ -330,6 +360,7 @@ static status read_rows(ply *p, const ply_element *e)
             TRY(check_number(p, of->number, value));
             p->rows[p->index][of->number] = value;
         }
+        end_item(p);
     }
     for (int k = 0; k < PLY_NUMBERS; k++)
         if (p->columns[k].type != PLY_NONE)
@@ -442,16 +473,19 @@ static status read_strip(ply *p, const ply_property *list)
 
 static status read_others(ply *p, const ply_element *e)
 {
-    for (p->index = 0; e->property_count > 0 && p->index < e->count; p->index++)
+    for (p->index = 0; e->property_count > 0 && p->index < e->count; p->index++) {
         for (int q = 0; q < e->property_count; q++) {
             const ply_property *of = &e->properties[q];
             TRY(!of->corners ? skip(p, of) : e->kind == PLY_FACE ? read_polygon(p, of) : read_strip(p, of));
         }
+        end_item(p);
+    }
     return STATUS_OK;
 }
 
 static status read_body(ply *p)
 {
+    p->by_lines = p->ascii && has_lines(p);
     for (int i = 0; i < p->element_count; i++) {
         p->element = &p->elements[i];
         TRY(p->element == p->vertices ? read_vertices(p, p->element) : read_others(p, p->element));

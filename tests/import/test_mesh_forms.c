@@ -66,6 +66,17 @@ static void ply_texts_are_read_in_every_form(void **state)
     check_squares("form.ply", texts, sizeof texts / sizeof *texts);
 }
 
+/* A header that forgets a property, as common tools have written it. */
+static void what_a_line_has_beyond_the_header_is_left_out(void **state)
+{
+    (void)state;
+    mesh_import *got =
+        read_text("beyond.ply", ASCII "element vertex 4\n" XYZ FACE "end_header\n" CORNERS "4 0 1 2 3 9 1 1 1\n");
+    assert_string_equal(got->note,
+                        "lines of the element face have more numbers than the header says: they are left out");
+    check_square(got, "beyond.ply");
+}
+
 static void add_number(bytes *b, double value, int size, bool big)
 {
     unsigned char at[8];
@@ -123,6 +134,14 @@ static void binary_ply_files_are_read_in_every_form(void **state)
                      what);
         free(what);
     }
+    bytes mixed = ply_of(false, 4, false, "\n", places, 4); /* \r\n ends the header's last line only */
+    char *end = (char *)memmem(mixed.at, mixed.size, "end_header\n", 11) + 10;
+    bytes turned = {0};
+    add(&turned, mixed.at, (size_t)(end - (char *)mixed.at));
+    add(&turned, "\r", 1);
+    add(&turned, end, mixed.size - (size_t)(end - (char *)mixed.at));
+    free(mixed.at);
+    check_square(read_bytes("mixed.ply", turned), "mixed line ends");
     /* an element with a list before the vertices, and a vertex with a list */
     bytes b = {0};
     add_text(&b,
@@ -390,6 +409,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ply_texts_are_read_in_every_form),
+        cmocka_unit_test(what_a_line_has_beyond_the_header_is_left_out),
         cmocka_unit_test(binary_ply_files_are_read_in_every_form),
         cmocka_unit_test(ply_numbers_are_doubles),
         cmocka_unit_test(normals_and_texture_coordinates_are_read),

@@ -49,6 +49,7 @@ static void a_triangle_is_read_in_every_form(void **state)
         "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\\n",
         "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 0.5\nf 1 2 3\n", /* weights: x, y, z are as written */
         "v 0 0 0 1 .5 0\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n",
+        "v 0 0 0 nan nan nan\nv 1 0 0 red\nv 0 1 0 \\\n1 2 3\nf 1 2 3\n",
         "v 0 0 0 1 1 .5 0\nv 1 0 0 1 0 0 0\nv 0 1 0 1 1 1 1\nf 1 2 3\n",
         "v -0 0.0 .0\nv +1. 0e5 0\nv 0 10e-1 -0e-9\nf 1 2 3\n",
         "v 0 0 0\n" THREE "f 2 3 4\n",
@@ -103,8 +104,6 @@ static void what_is_wrong_is_refused_with_its_line(void **state)
     static const refusal cases[] = {
         {THREE "f 1 2 5\n", 4, "a face refers to vertex 5, but the file has 3"},
         {THREE "\n\nf 1 2 3\nf -4 -2 -1\n", 7, "a face refers to vertex 0, but the file has 3"},
-        {THREE "f 1/1 2/1 3/1\n", 4, "texture coordinate 1, but the file has 0"},
-        {THREE "vn 0 0 1\nf 1//1 2//1 3//2\n", 5, "normal 2, but the file has 1"},
         {THREE "f 1 2 0\n", 4, "a corner of a face is invalid: '0'"},
         {THREE "f 1 2 3x\n", 4, "a corner of a face is invalid: '3x'"},
         {THREE "f 1 2 18446744073709551617\n", 4, "a corner of a face is invalid"},
@@ -120,7 +119,6 @@ static void what_is_wrong_is_refused_with_its_line(void **state)
         {"v 0 0 .\n", 1, "'.'"},
         {"v 0 0 --1\n", 1, "'--1'"},
         {"v 0 0 0x10\n", 1, "'0x10'"},
-        {"v 0 0 0 red\n", 1, "'red'"},
         {"vn 0 1\n", 1, "a normal has fewer than three numbers"},
         {"vn 0 nan 1\n", 1, "a normal has a word"},
         {"vt\n", 1, "a texture coordinate has no numbers"},
@@ -290,6 +288,29 @@ static void statements_of_a_library_are_read_or_ignored(void **state)
                                    "'forms.mtl' is ignored");
     free(img);
     mesh_import_destroy(got);
+}
+
+static void missing_normals_and_texture_coordinates_are_notes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *note;
+        bool normals, uvs;
+    } cases[] = {
+        {THREE "f 1/1 2/2 3/-1\n", "faces refer to texture coordinates that the file lacks: these are left out", false,
+         false},
+        {THREE "f 1//-1 2//1 3//1\n", "faces refer to normals that the file lacks: these are left out", false, false},
+        {THREE "vn 0 0 1\nvt 0 1\nf 1/1/1 2/2/1 3/1/3\n",
+         "faces refer to texture coordinates that the file lacks: these are left out; faces refer to normals that the "
+         "file lacks: these are left out",
+         true, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        mesh_import *got = read_text("lacking.obj", cases[i].text);
+        assert_triangles(got, (const double[9]){0, 0, 0, 1, 0, 0, 0, 1, 0}, 1, cases[i].text);
+        assert_string_equal(got->note, cases[i].note);
+        assert_true((got->mesh->normals != NULL) == cases[i].normals && (got->mesh->uvs != NULL) == cases[i].uvs);
+        mesh_import_destroy(got);
+    }
 }
 
 static void missing_libraries_and_images_are_notes(void **state)
@@ -481,6 +502,7 @@ int main(void)
         cmocka_unit_test(unusual_polygons_keep_their_triangles),
         cmocka_unit_test(several_libraries_are_read),
         cmocka_unit_test(statements_of_a_library_are_read_or_ignored),
+        cmocka_unit_test(missing_normals_and_texture_coordinates_are_notes),
         cmocka_unit_test(missing_libraries_and_images_are_notes),
         cmocka_unit_test(large_files_are_read_as_written),
         cmocka_unit_test(files_are_not_divided_within_a_continued_line),
