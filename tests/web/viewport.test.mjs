@@ -37,6 +37,34 @@ async function touch(screen, steps) {
 }
 
 export const cases = {
+  'the drawing of the axes turns with the camera': async (t) => {
+    const screen = await t.open(await t.lab('scenes/rod.yaml'));
+    const tips = () =>
+      screen.page.evaluate(() =>
+        Object.fromEntries(
+          ['x', 'y', 'z'].map((name) => {
+            const tip = document.querySelector(`.view-axes .axis-${name} circle`);
+            const at = ['cx', 'cy'].map((k) => Math.sign(Math.round(Number(tip.getAttribute(k)))));
+            return [name, [...at, tip.getAttribute('class')]];
+          }),
+        ),
+      );
+    const sides = {
+      // right and down are positive
+      z: { x: [1, 0, 'far'], y: [0, -1, 'far'], z: [0, 0, 'far'] },
+      'Shift+Z': { x: [-1, 0, 'far'], y: [0, -1, 'far'], z: [0, 0, 'near'] },
+      x: { x: [0, 0, 'near'], y: [0, -1, 'far'], z: [1, 0, 'far'] },
+      y: { x: [1, 0, 'far'], y: [0, 0, 'near'], z: [0, -1, 'far'] },
+    };
+    for (const [key, expected] of Object.entries(sides)) {
+      await change(screen, async () => {
+        await screen.page.locator('#image').focus();
+        await screen.page.keyboard.press(key);
+      });
+      t.equal(await tips(), expected, `the axes after ${key}`);
+    }
+  },
+
   'fifty notches and twenty orbits leave the pivot where it is': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);

@@ -33,6 +33,7 @@
 
 import { button, element, svg, write } from '../shared/ui.js';
 import { spreadAt } from '../shared/vectors.js';
+import { createAxes } from './axes.js';
 import { createPainting } from './painting.js';
 import { createToolbar } from './tools.js';
 
@@ -59,6 +60,7 @@ export function createView(root, lab) {
     canvas,
     drawing,
     overlay,
+    createAxes(lab),
     readout,
     notes.node,
   );
