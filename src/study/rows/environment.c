@@ -117,10 +117,19 @@ static void read_mask(source *from, char *text, size_t size)
         snprintf(text, size, "list %016" PRIx64, hash_finish(hash_text(HASH_START, allowed)));
 }
 
-void environment_read_units(char *text, size_t size)
+/* The error of the first file that exists but could not be read. */
+static status read_whole(const source *from, diagnostic *why)
+{
+    return from->error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read",
+                                      from->error, "run the command again")
+                       : STATUS_OK;
+}
+
+status environment_read_units(char *text, size_t size, diagnostic *why)
 {
     source from = {.root = ""};
     read_line(&from, "/proc/self/status", "Cpus_allowed_list", text, size);
+    return read_whole(&from, why);
 }
 
 static void read_limits(source *from, char *text, size_t size)
@@ -165,9 +174,7 @@ status environment_read(const char *root, isa level, run_environment *out, diagn
              instruction_dumps_exist() ? ", counted by valgrind" : "");
     snprintf(out->fact[BUILD], ENVIRONMENT_FACT_MAX, "%s", build_id());
     environment_close(out);
-    return system.error ? system_error(why, STATUS_FAILURE, NULL, "the environment of the run cannot be read",
-                                       system.error, "run the command again")
-                        : STATUS_OK;
+    return read_whole(from, why);
 }
 
 bool environment_difference(const run_environment *a, const run_environment *b, char *text, size_t size)

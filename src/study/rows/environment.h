@@ -31,8 +31,8 @@ status environment_read(const char *root, isa level, run_environment *out, diagn
 int environment_read_machine(const char *root, char *text, size_t size);
 void environment_of_node_type(const char *type, char *text, size_t size);
 const char *environment_node_type(void);
-/* The processing units that this process may use now, such as "0-3,8"; "unknown". */
-void environment_read_units(char *text, size_t size);
+/* The processing units that this process may use now, such as "0-3,8"; "unknown". STATUS_FAILURE as above. */
+status environment_read_units(char *text, size_t size, diagnostic *why);
 /* Computes the key from the facts. */
 void environment_close(run_environment *e);
 /* "build 1c… instead of 2d…, isa …": the differing facts, at most size - 1 bytes. False if there are none. */

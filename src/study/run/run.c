@@ -37,7 +37,7 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
 static status check_units(const run *r, diagnostic *why)
 {
     char now[sizeof r->units];
-    environment_read_units(now, sizeof now);
+    TRY(environment_read_units(now, sizeof now, why));
     if (strcmp(now, r->units) == 0)
         return STATUS_OK;
     return diagnose(why, STATUS_FAILURE, "run the command again: it measures the rest in the new environment",
@@ -146,7 +146,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
                              : out_of_memory(why);
     if (code == STATUS_OK) {
         code = environment_read("", job_isa(r.frame_job), &r.environment, why);
-        environment_read_units(r.units, sizeof r.units);
+        THEN(code, environment_read_units(r.units, sizeof r.units, why));
         r.build = progress_index_build();
     }
     THEN(code, run_read_rows(&r, why));
