@@ -69,7 +69,7 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 # pkg-config runs at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
-import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson) -lm)$(import_libs)
+import_libs = $(eval import_libs := $$(shell pkg-config --libs jansson) -lm)$(import_libs)
 # Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
 CFLAGS ?= -g$(if $(clang),dwarf-4)
 # One set of objects for the program and both libraries: on the supported machines, position-independent code with
@@ -105,7 +105,7 @@ mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(foreach e,html css js svg,src/web/page/*.$(e) src/web/page/*/*.$(e))))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c number.c below.c float_environment.c \
-  array.c text.c os_confine.c os_process.c thread_team.c worker_pool.c)
+  array.c text.c os_confine.c os_process.c thread_team.c worker_pool.c json_build.c)
 objects_of = $(1:src/%.c=$(build)/obj/%.o)
 include mk/arch.mk
 library_objects := $(call objects_of,$(library)) $(kernel_objects)
@@ -153,8 +153,8 @@ mpi-tools: | $(call requested,setup-mpi)
 	@pkg-config --exists $(MPI_PACKAGE) || \
 	  { echo 'mpi: OpenMPI ($(MPI_PACKAGE)) is not installed; run: make setup-mpi' >&2; exit 1; }
 
-# The mesh importer, the only program linked to assimp, which reads glTF. Built without sanitizers, which need more
-# address space than the limit that it sets itself.
+# The mesh importer, a program of its own. Built without sanitizers, which need more address space than the limit that
+# it sets itself.
 plain_cflags = $(filter-out -fsanitize% -fno-sanitize%,$(all_cflags))
 $(build)/cuvette-import: $(importer_objects)
 	$(call say,link $@)

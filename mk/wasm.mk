@@ -21,7 +21,7 @@ wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,even
   $(addprefix src/web/session/,confine.c figures.c rescue.c studies.c study_files.c videos.c) \
   src/web/live/render_worker_thread.c,$(web))
 wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources)) \
-  $(filter-out $(addprefix src/import/,main.c read.c gltf_files.c),$(wildcard src/import/*.c))
+  $(filter-out src/import/main.c,$(wildcard src/import/*.c))
 
 wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/libraries/include -include src/wasm/lacking.h \
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \

@@ -1,6 +1,8 @@
 /* Texts: similar words, formatting, a stream into memory, words of a shell, Base64. */
 #include "base/text.h"
 
+#include <errno.h>
+
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -194,17 +196,25 @@ char *base64_encode(const void *bytes, size_t size, bool for_address)
     return text;
 }
 
-unsigned char *base64_decode(const char *text, size_t length, size_t *size)
+unsigned char *base64_decode(const char *text, size_t length, bool for_address, size_t *size)
 {
+    const char *digits = for_address ? address_digits : plain_digits;
+    unsigned char value[256];
+    memset(value, 64, sizeof value);
+    for (unsigned char i = 0; i < 64; i++)
+        value[(unsigned char)digits[i]] = i;
+    for (int k = 0; k < 2 && !for_address && length > 0 && text[length - 1] == '='; k++)
+        length--;
+    errno = 0;
     unsigned char *bytes = length % 4 == 1 ? NULL : malloc(length / 4 * 3 + 3), *to = bytes;
     unsigned group = 0;
     for (size_t i = 0; bytes && i < length; i++) {
-        const char *digit = text[i] ? strchr(address_digits, text[i]) : NULL;
-        if (!digit) {
+        const unsigned digit = value[(unsigned char)text[i]];
+        if (digit > 63) {
             free(bytes);
             return NULL;
         }
-        group = group << 6 | (unsigned)(digit - address_digits);
+        group = group << 6 | digit;
         if (i % 4 > 0)
             *to++ = (unsigned char)(group >> (i % 4 == 1 ? 4 : i % 4 == 2 ? 2 : 0));
     }

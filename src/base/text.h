@@ -46,5 +46,6 @@ void shell_word_write(FILE *out, const char *word);
 /* Base64 (RFC 4648), of data in documents; for_address: base64url without padding. NULL when out of memory. */
 char *base64_encode(const void *bytes, size_t size, bool for_address);
 
-/* Decodes base64url without padding. NULL for another character, an impossible length, or when out of memory. */
-unsigned char *base64_decode(const char *text, size_t length, size_t *size);
+/* Decodes base64, or for_address base64url without padding. NULL for another character or an impossible length; also
+ * when out of memory, with errno ENOMEM. */
+unsigned char *base64_decode(const char *text, size_t length, bool for_address, size_t *size);

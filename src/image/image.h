@@ -100,5 +100,7 @@ status image_png_text(const void *bytes, size_t size, const char *keyword, size_
  * and BMP are decoded from sRGB to linear. Truncated or damaged files and more than 2^28 pixels are STATUS_BAD_INPUT.
  * file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
+/* The same for the bytes of a file, which may have come from inside another; the diagnostic has no place. */
+status image_decode(const void *bytes, size_t size, image **out, int *file_bits, diagnostic *why);
 /* The same for a file below root (below_open of base/file.h). */
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);

@@ -175,23 +175,25 @@ static void decode_confined(void *of)
     d->code = decode((const unsigned char *)d->bytes, d->size, d->out, &d->bits, d->why);
 }
 
+status image_decode(const void *bytes, size_t size, image **out, int *file_bits, diagnostic *why)
+{
+    decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
+    *out = NULL;
+    codec_run_confined(decode_confined, &d);
+    TRY(d.code);
+    (*out)->coded_bits = d.bits == 32 ? 0 : d.bits;
+    if (file_bits)
+        *file_bits = d.bits;
+    return STATUS_OK;
+}
+
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why)
 {
     char *bytes;
     size_t size;
     *out = NULL;
     TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
-    decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
-    codec_run_confined(decode_confined, &d);
+    const status code = image_decode(bytes, size, out, file_bits, why);
     free(bytes);
-    const status code = d.code;
-    const int bits = d.bits;
-    if (code != STATUS_OK) {
-        diagnostic_locate(why, path, 0, 0);
-        return code;
-    }
-    (*out)->coded_bits = bits == 32 ? 0 : bits;
-    if (file_bits)
-        *file_bits = bits;
-    return STATUS_OK;
+    return locate_failure(why, path, code);
 }

@@ -191,6 +191,17 @@ status texture_read_below(const char *path, const char *root, texture_space spac
     return code;
 }
 
+status texture_decode(const void *bytes, size_t size, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+                      texture_filter filter, texture **out, diagnostic *why)
+{
+    image *img;
+    *out = NULL;
+    TRY(image_decode(bytes, size, &img, NULL, why));
+    const status code = texture_create(img, space, wrap_u, wrap_v, filter, out, why);
+    image_destroy(img);
+    return code;
+}
+
 /* ---- sampling and hash ---- */
 
 vec3 texture_sample(const texture *t, double u, double v, double footprint)

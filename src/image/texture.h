@@ -38,6 +38,10 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why);
 
+/* The same from the bytes of an image file; the diagnostic has no place. */
+status texture_decode(const void *bytes, size_t size, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+                      texture_filter filter, texture **out, diagnostic *why);
+
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */
 

@@ -156,6 +156,11 @@ void flat_release(flat_mesh *flat)
     free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->triangles), free(flat->slots);
     for (unsigned i = 0; i < flat->material_count; i++)
         free(flat->materials[i].name), free(flat->materials[i].texture);
+    for (unsigned i = 0; i < flat->image_count; i++)
+        free(flat->images[i].bytes);
+    for (unsigned i = 0; i < flat->view_count; i++)
+        free(flat->views[i].name);
+    free(flat->views);
     free(flat->note);
     *flat = (flat_mesh){0};
 }
@@ -184,6 +189,30 @@ status flat_material(const request *req, flat_mesh *flat, const mesh_wire_materi
     *slot = (uint8_t)flat->material_count;
     flat->materials[flat->material_count++] = m;
     return (!name || m.name) && (!texture || m.texture) ? STATUS_OK : no_memory_for(req, why);
+}
+
+void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *number)
+{
+    *number = 0;
+    if (flat->image_count == MESH_WIRE_IMAGES_MAX) {
+        free(bytes);
+        return;
+    }
+    flat->images[flat->image_count] = (mesh_image){bytes, size};
+    *number = ++flat->image_count;
+}
+
+status flat_view(const request *req, flat_mesh *flat, const mesh_wire_view *values, const char *name, diagnostic *why)
+{
+    if (flat->view_count == MESH_WIRE_VIEWS_MAX) {
+        flat_note(flat, "only the first %d cameras and lights are read", (int)MESH_WIRE_VIEWS_MAX);
+        return STATUS_OK;
+    }
+    if (!flat->views && !(flat->views = malloc(MESH_WIRE_VIEWS_MAX * sizeof *flat->views)))
+        return no_memory_for(req, why);
+    const mesh_view v = {*values, name ? strdup(name) : NULL};
+    flat->views[flat->view_count++] = v;
+    return !name || v.name ? STATUS_OK : no_memory_for(req, why);
 }
 
 void flat_note(flat_mesh *flat, const char *format, ...)
@@ -228,6 +257,26 @@ static void write_materials(const flat_mesh *flat, FILE *to)
     }
 }
 
+static void write_images(const flat_mesh *flat, FILE *to)
+{
+    for (unsigned i = 0; i < flat->image_count; i++) {
+        const uint64_t size = flat->images[i].size;
+        fwrite(&size, sizeof size, 1, to);
+        fwrite(flat->images[i].bytes, 1, flat->images[i].size, to);
+    }
+}
+
+static void write_views(const flat_mesh *flat, FILE *to)
+{
+    for (unsigned i = 0; i < flat->view_count; i++) {
+        mesh_wire_view record = flat->views[i].values;
+        record.name_length = (uint32_t)text_length(flat->views[i].name);
+        fwrite(&record, sizeof record, 1, to);
+        if (flat->views[i].name)
+            fwrite(flat->views[i].name, 1, record.name_length, to);
+    }
+}
+
 status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
 {
     const mesh_wire_header header = {
@@ -238,6 +287,8 @@ status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
         .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u),
         .material_count = flat->material_count,
         .note_length = (uint32_t)text_length(flat->note),
+        .image_count = flat->image_count,
+        .view_count = flat->view_count,
     };
     fwrite(&header, sizeof header, 1, to);
     fwrite(flat->positions, sizeof *flat->positions, flat->vertex_count, to);
@@ -248,6 +299,8 @@ status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
     fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
     fwrite(flat->slots, 1, flat->triangle_count, to);
     write_materials(flat, to);
+    write_images(flat, to);
+    write_views(flat, to);
     if (flat->note)
         fwrite(flat->note, 1, header.note_length, to);
     fwrite(MESH_WIRE_END, 1, sizeof MESH_WIRE_END - 1, to);

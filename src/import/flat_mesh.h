@@ -1,7 +1,6 @@
-/* The result of the readers of mesh files: one mesh whose equal vertices are joined, and its materials. It does not
- * need assimp, so that the module for browsers has it, too. Ownership: flat_release frees the arrays. Errors:
- * STATUS_BAD_INPUT with the reason, also when out of memory if the request limits it; STATUS_FAILURE if the machine is
- * out of memory. */
+/* The result of the readers of mesh files: one mesh whose equal vertices are joined, its materials, and what a file has
+ * besides: images, cameras, lights. Ownership: flat_release frees all of it. Errors: STATUS_BAD_INPUT with the reason,
+ * also when out of memory if the request limits it; STATUS_FAILURE if the machine is out of memory. */
 #pragma once
 
 #include "base/status.h"
@@ -31,6 +30,18 @@ typedef struct mesh_material {
     char *name, *texture;
 } mesh_material;
 
+/* An image file inside the mesh file; owned. */
+typedef struct mesh_image {
+    unsigned char *bytes;
+    size_t size;
+} mesh_image;
+
+/* A camera or a light; the name, which may be NULL, is owned. */
+typedef struct mesh_view {
+    mesh_wire_view values; /* without the length */
+    char *name;
+} mesh_view;
+
 /* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
 typedef struct flat_mesh {
     size_t vertex_count, triangle_count;
@@ -43,7 +54,10 @@ typedef struct flat_mesh {
     bool with_normals, with_uvs;
     unsigned material_count;
     mesh_material materials[MESH_WIRE_SLOTS_MAX];
-    char *note; /* what the file names or has, and the mesh lacks; NULL: nothing */
+    unsigned image_count, view_count;
+    mesh_image images[MESH_WIRE_IMAGES_MAX];
+    mesh_view *views; /* room for MESH_WIRE_VIEWS_MAX; NULL: none */
+    char *note;       /* what the file names or has, and the mesh lacks; NULL: nothing */
 } flat_mesh;
 
 void flat_release(flat_mesh *flat);
@@ -52,6 +66,10 @@ status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnos
 /* Adds a material for further triangles; *slot is its index. Name and texture are copied; NULL: none. */
 status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
                      const char *texture, uint8_t *slot, diagnostic *why);
+/* Adds an image, whose bytes it takes over; *number is its number from 1, or 0 if there are too many. */
+void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *number);
+/* Adds a camera or a light, unless there are too many; the name is copied, NULL: none. */
+status flat_view(const request *req, flat_mesh *flat, const mesh_wire_view *values, const char *name, diagnostic *why);
 /* Adds a sentence to the note, unless it is there already. */
 void flat_note(flat_mesh *flat, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Writes the wire format (mesh_wire.h). STATUS_FAILURE if `to` cannot be written. */

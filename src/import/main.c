@@ -1,8 +1,11 @@
-/* The command line of cuvette-import (import.h). Exit codes: 0, 1 (the machine failed), 2 (the file is wrong), with one
- * line on standard error. */
-#include "import/import.h"
+/* The command line of cuvette-import, which reads one mesh file under resource limits that it sets itself, and writes
+ * the triangles to standard output in the format of import/mesh_wire.h. It is a program of its own so that a file that
+ * crashes it or exhausts its memory affects nothing else. Exit codes: 0, 1 (the machine failed), 2 (the file is wrong),
+ * with one line on standard error. */
+#include "import/plain.h"
 
 #include "base/float_environment.h"
+#include "base/json_build.h"
 #include "base/number.h"
 #include "base/os_confine.h"
 #include "base/os_process.h"
@@ -84,21 +87,7 @@ static void limit_all(const request *req)
 static status convert(const request *req, diagnostic *why)
 {
     static flat_mesh flat;
-    const struct aiScene *scene;
-    switch (req->kind) {
-    case FILE_OBJ:
-    case FILE_PLY:
-    case FILE_STL: TRY(plain_read(req, &flat, why)); break;
-    case FILE_GLTF:
-    case FILE_GLB:
-        TRY(read_scene(req, &scene, why));
-        TRY(flatten(req, scene, &flat, why));
-        break;
-    case FILE_UNKNOWN:
-        return diagnose_at(why, req->path, STATUS_BAD_INPUT,
-                           "use a file that ends in .obj, .ply, .stl, .gltf or .glb, or in .xyz for points",
-                           "unknown mesh format");
-    }
+    TRY(plain_read(req, &flat, why));
     return flat_write(&flat, stdout, why);
 }
 
@@ -125,6 +114,7 @@ int main(int count, char **arguments)
     request req = {
         .memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
     float_environment_set();
+    json_memory_reserve();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_parse(&parser, count, arguments, 0, NULL, &req);
     req.kind = file_kind_of(req.path);

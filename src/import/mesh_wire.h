@@ -11,6 +11,8 @@
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
  * - materials: material_count times a record, a name and a texture path (not terminated; the record has the lengths);
+ * - images: image_count times a length (uint64) and the bytes of an image file that is inside the mesh file;
+ * - views: view_count times a record and a name: the cameras and lights of the file;
  * - the note (not terminated; the header has its length): what was not read, in words; 0: everything was read;
  * - MESH_WIRE_END. */
 #pragma once
@@ -19,23 +21,57 @@
 
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
-enum { MESH_WIRE_VERSION = 3, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
+enum { MESH_WIRE_VERSION = 4, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
+enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 /* The largest magnitude of a coordinate. */
 #define MESH_WIRE_FAR 1e9
 
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
-/* Flags of a material: the file defines it; its image is embedded in the mesh file. */
-enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 };
+enum { MESH_WIRE_GIVEN = 1 };                      /* flag of a material: the file defines it */
+/* What an image's alpha means: the file does not say; nothing; below alpha_cutoff there is no surface; it is the
+ * opacity. */
+enum { MESH_WIRE_ALPHA_UNSAID, MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
+enum { MESH_WIRE_REPEAT, MESH_WIRE_MIRROR, MESH_WIRE_CLAMP };
+enum { MESH_WIRE_TRILINEAR, MESH_WIRE_BILINEAR, MESH_WIRE_NEAREST };
 
 typedef struct mesh_wire_header {
     char magic[8];
     uint32_t version, flags;
     uint64_t vertex_count, triangle_count;
     uint32_t material_count, note_length; /* 1 to MESH_WIRE_SLOTS_MAX; 0 to MESH_WIRE_TEXT_MAX */
+    uint32_t image_count, view_count;     /* up to MESH_WIRE_IMAGES_MAX and MESH_WIRE_VIEWS_MAX */
 } mesh_wire_header;
 
 /* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
-    uint32_t flags, name_length, texture_length, reserved;
+    double alpha_cutoff; /* of the image's alpha, at least 0; where it may be more than 1, nothing is left */
+    double transmission; /* of glass: the fraction of the light that is not reflected; its opacity is then that of thin
+                            glass */
+    double attenuation_color[3], attenuation_distance; /* of a volume: its transmittance after that way; 0: clear */
+    double dispersion;                                 /* 20 / Abbe's number; 0: none */
+    uint32_t flags, name_length, texture_length;
+    uint32_t image;                              /* from 1, instead of a texture path; 0: none */
+    uint32_t alpha_mode, wrap_u, wrap_v, filter; /* of the texture */
 } mesh_wire_material;
+
+/* A camera or a light of the file, in its axes: it looks, or shines, along `forward`, a unit vector like `up`. */
+typedef enum mesh_wire_view_kind {
+    MESH_WIRE_PERSPECTIVE,
+    MESH_WIRE_ORTHOGRAPHIC,
+    MESH_WIRE_SUN,
+    MESH_WIRE_POINT,
+    MESH_WIRE_SPOT,
+    MESH_WIRE_VIEW_KINDS
+} mesh_wire_view_kind;
+
+typedef struct mesh_wire_view {
+    double position[3], forward[3], up[3];
+    double height;       /* of a camera's image: an angle in radians, or for MESH_WIRE_ORTHOGRAPHIC a length */
+    double aspect;       /* of a camera's image: width / height; 0: free */
+    double color[3];     /* of a light, linear RGB */
+    double power;        /* of a sun lx, of other lights cd; times 683 lm/W or without: the file's number */
+    double inner, outer; /* half angles of a spot in radians: full light, none */
+    double range;        /* of a point or spot: no light beyond; 0: unlimited */
+    uint32_t kind, name_length;
+} mesh_wire_view;

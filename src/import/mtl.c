@@ -2,7 +2,6 @@
  * ignored: they are extensions, or nothing here depends on them. */
 #include "base/array.h"
 #include "base/file.h"
-#include "base/text.h"
 #include "import/plain.h"
 
 #include <errno.h>
@@ -178,18 +177,16 @@ static status read_text(library *l)
 /* Opens a file next to the mesh file; a name with \ is tried with / if there is no such file. */
 static int open_library(library *l, const char **reason)
 {
-    const char *slash = strrchr(l->req->path, '/');
-    const int folder = slash && l->name[0] != '/' ? (int)(slash + 1 - l->req->path) : 0;
-    char *path = text_format("%.*s%s", folder, l->req->path, l->name);
+    int fd = files_open_beside(l->req, l->name, reason);
+    if (fd >= 0 || errno != ENOENT || !strchr(l->name, '\\'))
+        return fd;
+    char *other = strdup(l->name);
+    for (char *c = other; other && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
     errno = ENOMEM;
-    int fd = path ? files_open(path, l->req->root, reason) : -1;
-    if (fd < 0 && errno == ENOENT && strchr(l->name, '\\')) {
-        for (char *c = path + folder; *c; c++)
-            *c = *c == '\\' ? '/' : *c;
-        fd = files_open(path, l->req->root, reason);
-    }
+    fd = other ? files_open_beside(l->req, other, reason) : -1;
     const int error = errno;
-    free(path);
+    free(other);
     errno = error;
     return fd;
 }

@@ -1,20 +1,18 @@
-/* Readers of OBJ (with MTL), PLY and STL files, without assimp: for the program cuvette-import and for the module for
- * browsers. Numbers are doubles, rounded once from the text of the file. Triangles are in the order of the file. A text
- * may have any line ends and begin with a byte order mark. Ownership: flat_release frees what a reader made, even after
- * an error. Errors: STATUS_BAD_INPUT with the file and the line, in binary files the byte, that is wrong; no_memory_for
- * if memory runs out. */
+/* Readers of OBJ (with MTL), PLY, STL and glTF files: for the program cuvette-import and for the module for
+ * browsers. Numbers are doubles, rounded once from the text of the file. Triangles are in the order of the file. A
+ * text may have any line ends and begin with a byte order mark. Ownership: flat_release frees what a reader made,
+ * even after an error. Errors: STATUS_BAD_INPUT with the file and the line, in binary files the byte, that is wrong;
+ * no_memory_for if memory runs out. */
 #pragma once
 
 #include "import/flat_mesh.h"
 
 enum { POLYGON_MAX = 65536 /* corners */ };
 
-/* ---- plain.c ---- */
-
-/* Reads the OBJ, PLY or STL file of the request into an empty mesh. */
-status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
-
 /* ---- files.c ---- */
+
+/* Reads the file of the request into an empty mesh. STATUS_BAD_INPUT if its ending is unknown. */
+status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
 
 /* The format by the ending of the name; upper and lower case are the same. */
 file_kind file_kind_of(const char *path);
@@ -22,6 +20,9 @@ file_kind file_kind_of(const char *path);
 /* Opens a regular file below the root (base/file.h), without waiting. -1, with errno and the reason, on failure; EXDEV:
  * the file is outside the root. The caller owns the descriptor. */
 int files_open(const char *path, const char *root, const char **reason);
+
+/* The same for a name in the mesh file, relative to its folder. */
+int files_open_beside(const request *req, const char *name, const char **reason);
 
 /* Opens the mesh file of the request, and sets the path of further errors. */
 status files_open_mesh(const request *req, int *fd, diagnostic *why);
@@ -69,6 +70,10 @@ status ply_read(const request *req, const char *text, size_t size, flat_mesh *fl
 /* Binary: 80 bytes, a count, and 50 bytes per facet. Text: facets from 'solid' to 'endsolid', once or more often. The
  * normals are ignored. */
 status stl_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
+
+/* Format: Khronos Group, glTF 2.0 specification; .gltf and .glb by the kind of the request. The triangles of the scene,
+ * in the pose that the file begins with; its materials, images, cameras and lights. */
+status gltf_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
 
 /* ---- mtl.c ---- */
 

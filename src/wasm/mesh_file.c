@@ -1,5 +1,5 @@
-/* Reads mesh files in a module: OBJ, PLY and STL, by the readers of the program's importer, which the browser's sandbox
- * confines. See scene/assets/mesh_file.h. */
+/* Reads mesh files in a module, by the readers of the program's importer, which the browser's sandbox confines. See
+ * scene/assets/mesh_file.h. */
 #include "scene/assets/mesh_file.h"
 #include "base/text.h"
 #include "import/plain.h"
@@ -28,13 +28,10 @@ static status read_plain(const char *path, const mesh_limits *limits, mesh_impor
                          .triangles = limits->triangles,
                          .vertices = limits->vertices,
                          .root = limits->root ? limits->root : ""};
-    if (req.kind != FILE_OBJ && req.kind != FILE_PLY && req.kind != FILE_STL)
-        return diagnose_at(why, path, STATUS_BAD_INPUT,
-                           "convert it to OBJ, PLY or STL, or open the scene with the program cuvette",
-                           "a browser reads meshes from .obj, .ply and .stl files only");
     flat_mesh *flat = calloc(1, sizeof *flat);
     status code = flat ? plain_read(&req, flat, why) : out_of_memory(why);
-    diagnostic_locate(why, path, code == STATUS_OK || !why ? 0 : why->line, 0);
+    const bool wrong = code != STATUS_OK && why;
+    diagnostic_locate(why, path, wrong ? why->line : 0, wrong ? why->column : 0);
     THEN(code, import_flat(flat, limits, out, why));
     THEN(code, mesh_textures_find(path, *out, why));
     if (flat)

@@ -29,7 +29,7 @@ __attribute__((unused)) static request request_of(const char *path, file_kind ki
         .path = path, .kind = kind, .triangles = 10000, .vertices = 30000, .memory_mib = 1024, .root = fuzz_folder()};
 }
 
-/* Reads an OBJ, PLY or STL file. Every index must exist: mesh_stream_read refuses others. */
+/* Reads a mesh file. Every index must exist: mesh_stream_read refuses others. */
 __attribute__((unused)) static void read_plain(const char *name, file_kind kind, const uint8_t *data, size_t size)
 {
     fuzz_write(name, data, size);

@@ -8,9 +8,7 @@
 set -uo pipefail
 asan=${ASAN_OPTIONS:-allocator_may_return_null=1}
 
-# assimp is not instrumented: it leaks, and what it crashes on is kept, but no failure of ours.
-declare -A options=([import]='-fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1' [http]='-timeout=60'
-    [films]='-max_len=52')
+declare -A options=([http]='-timeout=60' [films]='-max_len=52')
 # The longest inputs of the committed corpus.
 declare -A longest=([films]=52 [package]=64 [rows]=6000 [lesson]=4096)
 
@@ -45,8 +43,7 @@ run() {
     [[ -f tests/fuzz/$name.dict ]] && extra+=("-dict=tests/fuzz/$name.dict")
     mkdir -p "$build/corpus/$name"
     touch "$build/corpus/$name.ran"
-    # The importer leaves its memory to the end of its process.
-    case $name in import | http) export ASAN_OPTIONS=$asan:detect_leaks=0 ;; *) export ASAN_OPTIONS=$asan ;; esac
+    case $name in http) export ASAN_OPTIONS=$asan:detect_leaks=0 ;; *) export ASAN_OPTIONS=$asan ;; esac
     echo "$name, $2 s"
     "$build/tests/fuzz_$name" -max_total_time="$2" -timeout=25 -rss_limit_mb=2560 \
         -max_len=65536 -print_final_stats=1 \

@@ -105,7 +105,6 @@ static void obj_polygons_are_triangulated(void **state)
     mesh_import_destroy(got);
 }
 
-/* assimp's own merging would join vertices within 1e-5. */
 static void nearly_coincident_vertices_are_not_merged(void **state)
 {
     (void)state;

@@ -1,9 +1,11 @@
 /* Loads the files of a scene (background image, textures, meshes), and makes its generated meshes. */
+#include "base/budget.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/random.h"
 #include "geometry/mesh/mesh_generators.h"
 #include "geometry/shapes/shape.h"
+#include "import/mesh_wire.h"
 #include "scene/assets/mesh_file.h"
 #include "scene/assets/slime.h"
 #include "scene/model/check.h"
@@ -138,24 +140,43 @@ static double at_most_one(double value)
     return value < 1.0 ? value : 1.0;
 }
 
-/* Reads the image of a slot, or retains the image of an earlier slot with the same file. */
-static status read_image(const mesh_import *imported, int slot, const char *root, face_material *list, diagnostic *why)
+/* Whether two materials have the same image, laid on in the same way. */
+static bool same_image(const imported_material *a, const imported_material *b)
 {
-    const char *path = imported->materials[slot].texture;
+    const bool same = a->texture ? b->texture && strcmp(a->texture, b->texture) == 0 : a->image && a->image == b->image;
+    return same && a->wrap_u == b->wrap_u && a->wrap_v == b->wrap_v && a->filter == b->filter;
+}
+
+/* Reads the image of a slot, from a file or from inside the mesh file at mesh_path, or retains that of an earlier
+ * slot. */
+static status read_image(const mesh_import *imported, int slot, const char *mesh_path, const char *root,
+                         face_material *list, diagnostic *why)
+{
+    static const texture_wrap wraps[] = {
+        [MESH_WIRE_REPEAT] = TEXTURE_REPEAT, [MESH_WIRE_MIRROR] = TEXTURE_MIRROR, [MESH_WIRE_CLAMP] = TEXTURE_CLAMP};
+    static const texture_filter filters[] = {[MESH_WIRE_TRILINEAR] = TEXTURE_TRILINEAR,
+                                             [MESH_WIRE_BILINEAR] = TEXTURE_BILINEAR,
+                                             [MESH_WIRE_NEAREST] = TEXTURE_NEAREST};
+    const imported_material *m = &imported->materials[slot];
     for (int i = 0; i < slot; i++) {
-        const char *other = imported->materials[i].texture;
-        if (other && list[i].img && strcmp(other, path) == 0) {
+        if (list[i].img && same_image(&imported->materials[i], m)) {
             list[slot].img = list[i].img;
             texture_retain(list[i].img);
             return STATUS_OK;
         }
     }
     texture *img;
-    const status code =
-        texture_read_below(path, root, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &img, why);
-    if (code == STATUS_OK)
-        list[slot].img = img;
-    return code;
+    const texture_wrap u = wraps[m->wrap_u], v = wraps[m->wrap_v];
+    const texture_filter filter = filters[m->filter];
+    if (m->texture) {
+        TRY(texture_read_below(m->texture, root, TEXTURE_SRGB, u, v, filter, &img, why));
+    } else {
+        const imported_image *inside = &imported->images[m->image - 1];
+        TRY(locate_failure(why, mesh_path,
+                           texture_decode(inside->bytes, inside->size, TEXTURE_SRGB, u, v, filter, &img, why)));
+    }
+    list[slot].img = img;
+    return STATUS_OK;
 }
 
 static double brightest(vec3 color)
@@ -190,26 +211,27 @@ static face_material face_material_of(const imported_material *m)
     return mat;
 }
 
-static status read_face_materials(const mesh_import *imported, const char *root, face_material *list, diagnostic *why)
+static status read_face_materials(const mesh_import *imported, const char *mesh_path, const char *root,
+                                  face_material *list, diagnostic *why)
 {
     for (int i = 0; i < imported->material_count; i++) {
         list[i] = face_material_of(&imported->materials[i]);
-        if (imported->materials[i].texture)
-            TRY(read_image(imported, i, root, list, why));
+        if (imported->materials[i].texture || imported->materials[i].image)
+            TRY(read_image(imported, i, mesh_path, root, list, why));
     }
     return STATUS_OK;
 }
 
 /* Converts the importer's result; reads its image files, each once, below root (base/file.h). A diagnostic has the
  * path of the image file. */
-static status make_face_materials(const mesh_import *imported, const char *root, const face_materials **out,
-                                  diagnostic *why)
+static status make_face_materials(const mesh_import *imported, const char *mesh_path, const char *root,
+                                  const face_materials **out, diagnostic *why)
 {
     const int count = imported->material_count;
     face_material *list = calloc((size_t)count, sizeof *list);
     if (!list)
         return out_of_memory(why);
-    status code = read_face_materials(imported, root, list, why);
+    status code = read_face_materials(imported, mesh_path, root, list, why);
     if (code == STATUS_OK)
         code = face_materials_of(list, count, imported->note ? imported->note : "", out, why);
     else
@@ -219,16 +241,26 @@ static status make_face_materials(const mesh_import *imported, const char *root,
     return code;
 }
 
+/* What a limit of the program's memory leaves for the importer; 0: its default. */
+static uint64_t memory_for_import(void)
+{
+    bool chosen;
+    const uint64_t left = memory_budget_left(&chosen);
+    return !chosen ? 0 : left > 0 ? left : 1;
+}
+
 static status read_mesh_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why)
 {
     const bool points = mesh_is_points(path),
                right_handed = m->handedness == HANDEDNESS_FILE ? !points : m->handedness == HANDEDNESS_RIGHT;
-    const mesh_limits import_limits = {
-        .root = limits->root, .triangles = limits->triangles, .right_handed = right_handed};
+    const mesh_limits import_limits = {.root = limits->root,
+                                       .triangles = limits->triangles,
+                                       .memory_bytes = memory_for_import(),
+                                       .right_handed = right_handed};
     mesh_import *imported;
     TRY(points ? mesh_points_read(path, limits->root, right_handed, &imported, why)
                : mesh_read_file(path, &import_limits, &imported, why));
-    status code = points ? STATUS_OK : make_face_materials(imported, limits->root, &m->shading_materials, why);
+    status code = points ? STATUS_OK : make_face_materials(imported, path, limits->root, &m->shading_materials, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;
         mesh_retain(m->data);

@@ -1,6 +1,7 @@
 /* Reads the wire format of cuvette-import (import/mesh_wire.h), and finds the images that materials name. */
 #include "scene/assets/mesh_stream.h"
 #include "base/array.h"
+#include "base/budget.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -14,7 +15,9 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-_Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
+_Static_assert(sizeof(mesh_wire_header) == 48 && sizeof(mesh_wire_material) == 22 * 8 + 32 &&
+                   sizeof(mesh_wire_view) == 18 * 8 + 8,
+               "no padding");
 _Static_assert((int)MESH_WIRE_SLOTS_MAX == (int)MESH_SLOTS_MAX && (int)MESH_WIRE_FAR == (int)MESH_FAR,
                "the same limits");
 _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays without padding");
@@ -44,6 +47,14 @@ void mesh_import_destroy(mesh_import *imported)
         free(imported->materials[i].texture);
     }
     free(imported->materials);
+    for (int i = 0; imported->images && i < imported->image_count; i++)
+        free(imported->images[i].bytes);
+    free(imported->images);
+    for (int i = 0; imported->views && i < imported->view_count; i++) {
+        free(imported->views[i].values);
+        free(imported->views[i].name);
+    }
+    free(imported->views);
     free(imported->note);
     mesh_release(imported->mesh);
     free(imported);
@@ -70,6 +81,8 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
         return damaged(why, "unknown flags");
     if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX)
         return damaged(why, "the number of materials is out of range");
+    if (header->image_count > MESH_WIRE_IMAGES_MAX || header->view_count > MESH_WIRE_VIEWS_MAX)
+        return damaged(why, "the number of images, cameras or lights is out of range");
     if (!header->triangle_count || !header->vertex_count)
         return damaged(why, "no triangles");
     if (header->triangle_count > limits->triangles)
@@ -129,7 +142,7 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
         if ((unsigned char)fresh[i] < 0x20 || fresh[i] == 0x7f)
             code = diagnose(why, STATUS_BAD_INPUT, "rename it",
-                            "the name of a material or of its image contains a control character");
+                            "the name of a material, an image, a camera or a light contains a control character");
     }
     if (code != STATUS_OK) {
         free(fresh);
@@ -149,47 +162,110 @@ static bool within(const double *values, int count, double low, double high)
 
 static status check_numbers(const imported_material *m, diagnostic *why)
 {
-    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)        ? "diffuse colour"
-                        : !within(m->ambient, 3, 0, COLOR_MAX)    ? "ambient colour"
-                        : !within(m->specular, 3, 0, COLOR_MAX)   ? "specular colour"
-                        : !within(m->emissive, 3, 0, COLOR_MAX)   ? "emitted colour"
-                        : !within(&m->shininess, 1, 0, COLOR_MAX) ? "shininess"
-                        : !within(&m->opacity, 1, 0, 1)           ? "opacity"
-                        : !within(&m->ior, 1, 0, COLOR_MAX)       ? "index of refraction"
-                                                                  : NULL;
+    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)                  ? "diffuse colour"
+                        : !within(m->ambient, 3, 0, COLOR_MAX)              ? "ambient colour"
+                        : !within(m->specular, 3, 0, COLOR_MAX)             ? "specular colour"
+                        : !within(m->emissive, 3, 0, COLOR_MAX)             ? "emitted colour"
+                        : !within(&m->shininess, 1, 0, COLOR_MAX)           ? "shininess"
+                        : !within(&m->opacity, 1, 0, 1)                     ? "opacity"
+                        : !within(&m->ior, 1, 0, COLOR_MAX)                 ? "index of refraction"
+                        : !within(&m->alpha_cutoff, 1, 0, COLOR_MAX)        ? "alpha cutoff"
+                        : !within(&m->transmission, 1, 0, 1)                ? "transmission"
+                        : !within(m->attenuation_color, 3, 0, 1)            ? "attenuation colour"
+                        : !within(&m->attenuation_distance, 1, 0, MESH_FAR) ? "attenuation distance"
+                        : !within(&m->dispersion, 1, 0, COLOR_MAX)          ? "dispersion"
+                                                                            : NULL;
     return !wrong ? STATUS_OK
                   : diagnose(why, STATUS_BAD_INPUT, "correct the material", "material '%s': its %s is out of range",
                              m->name ? m->name : "", wrong);
 }
 
-static status read_material(const mesh_source *source, imported_material *m, diagnostic *why)
+static status read_material(const mesh_source *source, uint32_t image_count, imported_material *m, diagnostic *why)
 {
     mesh_wire_material record;
     TRY(source->read(source->context, &record, sizeof record, why));
-    if (record.flags & ~(uint32_t)(MESH_WIRE_GIVEN | MESH_WIRE_TEXTURE_INSIDE) || record.reserved)
+    if (record.flags & ~(uint32_t)MESH_WIRE_GIVEN || record.image > image_count ||
+        (record.image && record.texture_length) || record.alpha_mode > MESH_WIRE_ALPHA_BLEND ||
+        record.wrap_u > MESH_WIRE_CLAMP || record.wrap_v > MESH_WIRE_CLAMP || record.filter > MESH_WIRE_NEAREST)
         return damaged(why, "unknown flags of a material");
     m->given = record.flags & MESH_WIRE_GIVEN;
-    m->texture_inside = record.flags & MESH_WIRE_TEXTURE_INSIDE;
     memcpy(m->color, record.diffuse, sizeof m->color);
     memcpy(m->ambient, record.ambient, sizeof m->ambient);
     memcpy(m->specular, record.specular, sizeof m->specular);
     memcpy(m->emissive, record.emissive, sizeof m->emissive);
+    memcpy(m->attenuation_color, record.attenuation_color, sizeof m->attenuation_color);
     m->shininess = record.shininess;
     m->opacity = record.opacity;
     m->ior = record.ior;
+    m->alpha_cutoff = record.alpha_cutoff;
+    m->transmission = record.transmission;
+    m->attenuation_distance = record.attenuation_distance;
+    m->dispersion = record.dispersion;
+    m->alpha_mode = (int)record.alpha_mode;
+    m->wrap_u = (int)record.wrap_u;
+    m->wrap_v = (int)record.wrap_v;
+    m->filter = (int)record.filter;
+    m->image = (int)record.image;
     TRY(read_text(source, record.name_length, &m->name, why));
     TRY(read_text(source, record.texture_length, &m->texture, why));
     return check_numbers(m, why);
 }
 
-static status read_materials(const mesh_source *source, mesh_import *into, uint32_t note_length, diagnostic *why)
+static status read_images(const mesh_source *source, mesh_import *into, diagnostic *why)
+{
+    for (int i = 0; i < into->image_count; i++) {
+        uint64_t size;
+        TRY(source->read(source->context, &size, sizeof size, why));
+        if (size == 0 || size > SIZE_MAX / 2)
+            return damaged(why, "the size of an image is out of range");
+        TRY(memory_budget_check(size, "use a smaller image", why, "an image inside the mesh file"));
+        into->images[i] = (imported_image){malloc((size_t)size), (size_t)size};
+        if (!into->images[i].bytes)
+            return no_memory(why);
+        TRY(source->read(source->context, into->images[i].bytes, (size_t)size, why));
+    }
+    return STATUS_OK;
+}
+
+/* Mirrors z into the left-handed world, as mesh_mirror does. */
+static void mirror_view(mesh_wire_view *v)
+{
+    v->position[2] = 0.0 - v->position[2];
+    v->forward[2] = 0.0 - v->forward[2];
+    v->up[2] = 0.0 - v->up[2];
+}
+
+static status read_view(const mesh_source *source, bool right_handed, imported_view *view, diagnostic *why)
+{
+    mesh_wire_view *v = view->values = malloc(sizeof *v);
+    if (!v)
+        return no_memory(why);
+    TRY(source->read(source->context, v, sizeof *v, why));
+    TRY(read_text(source, v->name_length, &view->name, why));
+    if (v->kind >= MESH_WIRE_VIEW_KINDS || !within(v->forward, 3, -1.001, 1.001) || !within(v->up, 3, -1.001, 1.001))
+        return damaged(why, "a camera or a light has no direction");
+    if (!within(v->position, 3, -MESH_FAR, MESH_FAR) || !within(&v->height, 1, 0, MESH_FAR) ||
+        !within(&v->aspect, 1, 0, MESH_FAR) || !within(v->color, 3, 0, COLOR_MAX) || !within(&v->power, 1, 0, 1e12) ||
+        !within(&v->inner, 1, 0, 4) || !within(&v->outer, 1, 0, 4) || !within(&v->range, 1, 0, 1e30))
+        return diagnose(why, STATUS_BAD_INPUT, "correct it", "a number of %s '%s' is out of range",
+                        v->kind <= MESH_WIRE_ORTHOGRAPHIC ? "camera" : "light", view->name ? view->name : "");
+    if (right_handed)
+        mirror_view(v);
+    return STATUS_OK;
+}
+
+static status read_rest(const mesh_source *source, mesh_import *into, bool right_handed, uint32_t note_length,
+                        diagnostic *why)
 {
     for (int i = 0; i < into->material_count; i++) {
         imported_material *m = &into->materials[i];
-        TRY(read_material(source, m, why));
+        TRY(read_material(source, (uint32_t)into->image_count, m, why));
         if (m->name && !(into->mesh->slot_names[i] = strdup(m->name)))
             return no_memory(why);
     }
+    TRY(read_images(source, into, why));
+    for (int i = 0; i < into->view_count; i++)
+        TRY(read_view(source, right_handed, &into->views[i], why));
     TRY(read_text(source, note_length, &into->note, why));
     char end[sizeof MESH_WIRE_END - 1];
     TRY(source->read(source->context, end, sizeof end, why));
@@ -204,11 +280,15 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     TRY(mesh_create((size_t)header.vertex_count, (size_t)header.triangle_count, header.flags & MESH_WIRE_NORMALS,
                     header.flags & MESH_WIRE_UVS, true, &into->mesh, why));
     into->mesh->slot_count = into->material_count = (int)header.material_count;
+    into->image_count = (int)header.image_count;
+    into->view_count = (int)header.view_count;
     into->materials = calloc(header.material_count, sizeof *into->materials);
-    if (!into->materials)
+    into->images = calloc(header.image_count + 1, sizeof *into->images);
+    into->views = calloc(header.view_count + 1, sizeof *into->views);
+    if (!into->materials || !into->images || !into->views)
         return no_memory(why);
     TRY(read_arrays(source, into->mesh, why));
-    TRY(read_materials(source, into, header.note_length, why));
+    TRY(read_rest(source, into, limits->right_handed, header.note_length, why));
     into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
     if (limits->right_handed)
         mesh_mirror(into->mesh);

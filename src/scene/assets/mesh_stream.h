@@ -25,24 +25,45 @@ mesh_limits mesh_limits_complete(const mesh_limits *limits);
 /* A material of the file in the file's own conventions, all numbers finite. Colours are linear RGB of at least 0: Kd of
  * MTL is taken as linear, as in POV-Ray and most renderers, and glTF's factors are linear by definition. */
 typedef struct imported_material {
-    char *name;         /* NULL if it has none */
-    bool given;         /* false: the file has no material for these triangles; the other fields are then undefined */
-    double color[3];    /* diffuse: MTL Kd, glTF baseColorFactor */
-    double ambient[3];  /* Ka */
-    double specular[3]; /* Ks */
-    double emissive[3]; /* Ke; glTF emissiveFactor */
-    double shininess;   /* Phong exponent: Ns */
-    double opacity;     /* 0 to 1: d, or 1 - Tr; glTF's alpha */
-    double ior;         /* at least 1: Ni */
+    char *name;          /* NULL if it has none */
+    bool given;          /* false: the file has no material for these triangles; the other fields are then undefined */
+    double color[3];     /* diffuse: MTL Kd, glTF baseColorFactor */
+    double ambient[3];   /* Ka */
+    double specular[3];  /* Ks */
+    double emissive[3];  /* Ke; glTF emissiveFactor */
+    double shininess;    /* Phong exponent: Ns */
+    double opacity;      /* 0 to 1: d, or 1 - Tr; glTF's alpha where it blends, times 1 - transmission */
+    double ior;          /* at least 1: Ni, KHR_materials_ior */
+    double alpha_cutoff; /* of a mask: at least 0; above 1 nothing is left */
+    double transmission; /* KHR_materials_transmission, 0 to 1 */
+    double attenuation_color[3], attenuation_distance; /* KHR_materials_volume; distance 0: clear */
+    double dispersion;                                 /* KHR_materials_dispersion: 20 / Abbe's number; 0: none */
+    int alpha_mode;             /* MESH_WIRE_ALPHA_* of import/mesh_wire.h: what the alpha of the image means */
+    int wrap_u, wrap_v, filter; /* of the image: MESH_WIRE_REPEAT and so on */
     char *texture; /* path of the diffuse image (map_Kd, glTF baseColorTexture), NULL if there is none; mesh_stream_read
                       leaves it as written in the file */
-    bool texture_inside; /* the image is embedded in the mesh file, which is not supported; texture is NULL */
+    int image;     /* the image inside the mesh file, from 1, instead of a path; 0: none */
 } imported_material;
+
+/* An image file inside the mesh file. */
+typedef struct imported_image {
+    unsigned char *bytes;
+    size_t size;
+} imported_image;
+
+/* A camera or a light of the file, in the axes of the file or, with right_handed, of the world. */
+typedef struct imported_view {
+    struct mesh_wire_view *values; /* import/mesh_wire.h, all numbers finite */
+    char *name;                    /* NULL if it has none */
+} imported_view;
 
 typedef struct mesh_import {
     struct mesh *mesh;  /* finished; triangle t has the material materials[slots[t]] */
     int material_count; /* = mesh->slot_count; the mesh's slots have the names of the materials */
     imported_material *materials;
+    int image_count, view_count;
+    imported_image *images;
+    imported_view *views;
     char *note; /* what the file names or has, and the mesh lacks; NULL: nothing */
 } mesh_import;
 

@@ -60,7 +60,7 @@ static status read_code(const char *name, const char *code, size_t length, scene
 {
     size_t packed_size = 0, size = 0;
     char *text = NULL;
-    unsigned char *packed = length <= 2 * SHARED_TEXT_MAX ? base64_decode(code, length, &packed_size) : NULL;
+    unsigned char *packed = length <= 2 * SHARED_TEXT_MAX ? base64_decode(code, length, true, &packed_size) : NULL;
     status result = packed ? expand(name, packed, packed_size, &text, &size, why)
                            : diagnose_at(why, name, STATUS_BAD_INPUT, "copy the complete link or page",
                                          "the code of the shared scene is damaged");
