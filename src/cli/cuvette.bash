@@ -170,7 +170,7 @@ _cuvette()
         ;;
     scene)
         if [[ $current == -* ]]; then
-            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --check --list --link --all --output --memory-limit --help --usage --version
+            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --from --check --list --link --all --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

@@ -5,6 +5,8 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
+#include "scene/assets/mesh_file.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
@@ -227,13 +229,13 @@ typedef struct edit_option {
 } edit_option;
 
 typedef struct scene_request {
-    const char *path, *output; /* path NULL: no file; output NULL: standard output */
+    const char *path, *output, *model; /* path NULL: no file; output NULL: standard output; model NULL: no --from */
     edit_option *edits;
     size_t edit_count;
     bool begins_empty, only_checks, only_lists, only_links, writes_all;
 } scene_request;
 
-enum { OPTIONS_MOST = 20 };
+enum { OPTIONS_MOST = 21 };
 
 static status parse_edit(const command_option *o, void *context, const char *text, diagnostic *why)
 {
@@ -247,6 +249,8 @@ static status parse_edit(const command_option *o, void *context, const char *tex
 static const command_option plain_options[] = {
     {"new", 0, NULL, "start with an empty scene instead of a file",
      OPTION_FILLS(option_flag, scene_request, begins_empty)},
+    {"from", 0, "MODEL", "start with a mesh file, such as a .glb: its mesh, camera and lights",
+     OPTION_FILLS(option_text, scene_request, model)},
     {"check", 0, NULL, "only check the scene and its files, and note likely mistakes",
      OPTION_FILLS(option_flag, scene_request, only_checks)},
     {"list", 0, NULL, "only list the objects: kind and name; for a solid also shape and material",
@@ -278,11 +282,12 @@ static status check_request(const scene_request *request, diagnostic *why)
 {
     static const char *const endings[] = {".yaml", ".yml"};
     size_t unused;
-    if (!request->path && !request->begins_empty)
+    if (!request->path && !request->begins_empty && !request->model)
         return options_wrong("scene", NULL, why, "give a scene file, such as experiments/scenes/rod.yaml, or --new",
                              "no scene is given");
-    if (request->path && request->begins_empty)
-        return options_wrong("scene", NULL, why, "use only one of them", "a scene file and --new exclude each other");
+    if ((request->path != NULL) + request->begins_empty + (request->model != NULL) > 1)
+        return options_wrong("scene", NULL, why, "use only one of them",
+                             "a scene file, --new and --from exclude each other");
     const int only = request->only_checks + request->only_lists + request->only_links;
     if (only > 1)
         return options_wrong("scene", NULL, why, "use only one of them",
@@ -296,18 +301,30 @@ static status check_request(const scene_request *request, diagnostic *why)
     return outputs_check_folder("-o", request->output, why);
 }
 
+/* For messages: of the file, or the option that replaces it. */
+static const char *name_of(const scene_request *request)
+{
+    return request->path ? request->path : request->model ? request->model : "--new";
+}
+
 static status make_scene(const scene_request *request, scene **out, diagnostic *why)
 {
     status result = STATUS_OK;
+    char *notes = NULL;
     if (request->path)
         result = scene_read(request->path, out, why);
+    else if (request->model)
+        result = mesh_first_scene(request->model, out, &notes, why);
     else if (!(*out = scene_create()))
         result = out_of_memory(why);
+    if (notes)
+        terminal_note(notes);
+    free(notes);
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK && (request->edit_count > 0 || !request->path)) {
         /* The position of errors without a line. */
-        diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
+        diagnostic_locate(why, name_of(request), 0, 0);
         result = scene_check(*out, why);
     }
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
@@ -340,16 +357,15 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
         result = scene_check(s, why); /* again, now with the triangles of the meshes */
     if (result != STATUS_OK) {
         if (why->line == 0) /* keep the position of an error that has a line */
-            diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
+            diagnostic_locate(why, name_of(request), 0, 0);
         return result;
     }
     isa level = ISA_BASE;
     TRY(scene_input_isa(&level, why));
     TRY(scene_input_lint(s, level, why));
     scene_input_note_beams(s);
-    printf("%s: valid; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
-           request->path ? request->path : "--new", s->mesh_count, s->texture_count, s->material_count, s->light_count,
-           s->solid_count);
+    printf("%s: valid; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n", name_of(request),
+           s->mesh_count, s->texture_count, s->material_count, s->light_count, s->solid_count);
     return STATUS_OK;
 }
 
@@ -379,11 +395,12 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
 }
 
 static const char about[] =
-    "Read a scene file, or start with an empty scene; apply the edits in the order of the options; check the scene and "
-    "write it in canonical form. Only values that differ from the defaults are written; comments are dropped. If "
-    "there is an error, nothing is written.\vExamples:\n"
+    "Read a scene file, or start with an empty scene or a mesh file; apply the edits in the order of the options; "
+    "check the scene and write it in canonical form. Only values that differ from the defaults are written; comments "
+    "are dropped. If there is an error, nothing is written.\vExamples:\n"
     "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
-    "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
+    "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8\n"
+    "  cuvette scene --from bottle.glb -o bottle.yaml";
 
 status command_scene(int argc, char **argv, diagnostic *why)
 {

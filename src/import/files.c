@@ -1,5 +1,4 @@
-/* Files and their texts: which an import may open, the mesh file, and how a text is divided into lines, words and
- * numbers. */
+/* Files and their texts: which an import may open, and how a text is divided into lines, words and numbers. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -146,41 +145,6 @@ status files_open_mesh(const request *req, int *fd, diagnostic *why)
     if (*fd < 0)
         return diagnose(why, STATUS_BAD_INPUT, "give a readable mesh file", "cannot open: %s", reason);
     return STATUS_OK;
-}
-
-/* --- the mesh file, with the reader of its format --- */
-
-static status load(const request *req, file_text *text, diagnostic *why)
-{
-    int fd;
-    TRY(files_open_mesh(req, &fd, why));
-    const int error = files_read(fd, text);
-    if (error == ENOMEM)
-        return no_memory_for(req, why);
-    if (error)
-        return system_error(why, STATUS_BAD_INPUT, req->path, "cannot read", error, "give a readable mesh file");
-    if (text->size > 0)
-        return STATUS_OK;
-    files_release(text);
-    return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty");
-}
-
-status plain_read(const request *req, flat_mesh *flat, diagnostic *why)
-{
-    file_text text;
-    if (req->kind == FILE_UNKNOWN)
-        return diagnose_at(why, req->path, STATUS_BAD_INPUT,
-                           "use a file that ends in .obj, .ply, .stl, .gltf or .glb, or in .xyz for points",
-                           "unknown mesh format");
-    TRY(load(req, &text, why));
-    status (*const read)(const request *, const char *, size_t, flat_mesh *, diagnostic *) =
-        req->kind == FILE_OBJ   ? obj_read
-        : req->kind == FILE_PLY ? ply_read
-        : req->kind == FILE_STL ? stl_read
-                                : gltf_read;
-    const status code = read(req, text.bytes, text.size, flat, why);
-    files_release(&text);
-    return code;
 }
 
 /* --- texts --- */

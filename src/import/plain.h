@@ -9,10 +9,12 @@
 
 enum { POLYGON_MAX = 65536 /* corners */ };
 
-/* ---- files.c ---- */
+/* ---- plain.c ---- */
 
 /* Reads the file of the request into an empty mesh. STATUS_BAD_INPUT if its ending is unknown. */
 status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
+
+/* ---- files.c ---- */
 
 /* The format by the ending of the name; upper and lower case are the same. */
 file_kind file_kind_of(const char *path);

@@ -1014,7 +1014,8 @@ refused "a scene that is invalid as a whole" \
     "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \
 cup has no wall" \
     built.yaml --set vessel.inner_radius=2
-refused "a file and --new" "scene: a scene file and --new exclude each other; use only one of them" built.yaml --new
+refused "a file and --new" "scene: a scene file, --new and --from exclude each other; use only one of them" \
+    built.yaml --new
 run scene built.yaml -o rod.png
 check "scene writes no image" is "$code $(wc -l <err)" "2 1"
 run scene

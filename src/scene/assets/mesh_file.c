@@ -29,6 +29,7 @@ typedef struct mesh_child {
     size_t message_length;
     bool late;      /* killed after the deadline */
     bool cancelled; /* killed because the work was cancelled (base/cancel.h) */
+    bool cut;       /* its standard output ended too early */
     int error;      /* errno of a failed read of its standard output */
 } mesh_child;
 
@@ -223,8 +224,10 @@ static status read_bytes(void *context, void *bytes, size_t size, diagnostic *wh
         const int error = ((const mesh_child *)context)->error;
         if (got == 0 && error)
             return system_error(why, STATUS_FAILURE, NULL, "cannot read the importer's answer", error, "try again");
-        if (got == 0)
+        if (got == 0) {
+            ((mesh_child *)context)->cut = true;
             return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer is truncated");
+        }
         done += got;
     }
     return STATUS_OK;
@@ -321,6 +324,9 @@ static status finish(mesh_child *child, const char *path, const mesh_limits *lim
             return diagnose(why, STATUS_BAD_INPUT,
                             "use a mesh of less detail, or export the file again if it is damaged",
                             "reading the file took more CPU time than the limit of %g s", limits->wall_s);
+        if (signal == SIGKILL && child->cut) /* reap() kills only after the end of the answer, or after a refusal */
+            return diagnose(why, STATUS_FAILURE, "set --memory-limit, or use a mesh of less detail",
+                            "the importer was killed, as the system does when memory runs out");
         if (signal == SIGKILL && code != STATUS_OK)
             return code;
         return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete, or export it again",
