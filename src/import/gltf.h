@@ -110,8 +110,8 @@ typedef struct gltf_uv_map {
 
 /* Of a material, -1 for none. */
 status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out);
-/* Makes the slot of a material, -1 for none. */
-status gltf_material_slot(gltf_file *g, int64_t index, uint8_t *slot);
+/* Makes the slot of a material, -1 for none, whose colour is multiplied by a tint. */
+status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], uint8_t *slot);
 
 /* Adds the camera and the light of a node at its place. */
 status gltf_views(const gltf_file *g, gltf_item node, const gltf_affine *place);

@@ -142,21 +142,19 @@ static status read_texture(gltf_file *g, gltf_item material, mesh_wire_material 
 
 /* --- materials --- */
 
-/* Alpha, 3.9.4. A mask cuts where factor times alpha is below the cutoff: the cutoff is divided by the factor here. */
+/* Alpha, 3.9.4. Without an image the factor alone decides about a mask. */
 static status read_alpha(const gltf_file *g, gltf_item of, double factor, bool textured, mesh_wire_material *m)
 {
     const char *mode = gltf_text(of.json, "alphaMode");
     double cutoff = 0.5;
-    m->alpha_mode = MESH_WIRE_ALPHA_OPAQUE;
     if (strcmp(mode, "BLEND") == 0) {
         m->alpha_mode = MESH_WIRE_ALPHA_BLEND;
         m->opacity = fmin(fmax(factor, 0), 1);
     } else if (strcmp(mode, "MASK") == 0) {
         TRY(gltf_numbers(g, of, of.json, "alphaCutoff", 1, &cutoff));
         m->alpha_mode = MESH_WIRE_ALPHA_MASK;
-        m->alpha_cutoff = factor > 0 ? fmax(cutoff, 0) / factor : cutoff > 0 ? HUGE_VAL : 0.0;
-        m->alpha_cutoff = fmin(m->alpha_cutoff, 2); /* above 1 nothing is left */
-        m->opacity = !textured && m->alpha_cutoff > 1 ? 0 : 1;
+        m->alpha_cutoff = fmax(cutoff, 0);
+        m->opacity = textured ? fmin(fmax(factor, 0), 1) : factor >= cutoff ? 1 : 0;
     }
     return STATUS_OK;
 }
@@ -207,12 +205,13 @@ static void note_ignored(const gltf_file *g, gltf_item of)
         flat_note(g->flat, "images of normals, occlusion, metalness and roughness are ignored");
 }
 
-static status read_material(gltf_file *g, gltf_item of, mesh_wire_material *m, char **path)
+static status read_material(gltf_file *g, gltf_item of, const double tint[3], mesh_wire_material *m, char **path)
 {
     double color[4] = {1, 1, 1, 1};
     m->flags = MESH_WIRE_GIVEN;
     TRY(gltf_numbers(g, of, json_object_get(of.json, "pbrMetallicRoughness"), "baseColorFactor", 4, color));
-    memcpy(m->diffuse, color, sizeof m->diffuse);
+    for (int c = 0; c < 3; c++)
+        m->diffuse[c] = color[c] * tint[c];
     TRY(read_texture(g, of, m, path));
     TRY(read_alpha(g, of, color[3], *path || m->image, m));
     TRY(read_emission(g, of, m));
@@ -220,13 +219,13 @@ static status read_material(gltf_file *g, gltf_item of, mesh_wire_material *m, c
     return read_glass(g, of, m);
 }
 
-status gltf_material_slot(gltf_file *g, int64_t index, uint8_t *slot)
+status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], uint8_t *slot)
 {
     mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = USUAL_IOR, .attenuation_color = {1, 1, 1}};
     const gltf_item of = index < 0 ? (gltf_item){0} : gltf_at(g, "materials", (size_t)index);
     const char *name = json_string_value(json_object_get(of.json, "name"));
     char *path = NULL;
-    status code = index < 0 ? STATUS_OK : read_material(g, of, &m, &path);
+    status code = index < 0 ? STATUS_OK : read_material(g, of, tint, &m, &path);
     THEN(code, flat_material(g->req, g->flat, &m, name, path, slot, g->why));
     free(path);
     return code;

@@ -21,11 +21,17 @@ typedef struct primitive {
     gltf_uv_map map;
 } primitive;
 
+/* A material that triangles use, and the colour of all their vertices (COLOR_0), which multiplies its own. */
+typedef struct tinted {
+    bool used;
+    double tint[3];
+} tinted;
+
 typedef struct walk {
     gltf_file *g;
     joiner join;
     uint64_t triangles, vertices; /* counted by the first traversal */
-    uint8_t *material_used;       /* by material; the last: none */
+    tinted *used;                 /* by material; the last: none */
     uint8_t *slot_of;
     bool *visited;      /* by node */
     gltf_affine *world; /* by node: its transform, after the first traversal */
@@ -167,8 +173,6 @@ static status open_primitive(gltf_file *g, gltf_item mesh, const json_t *json, p
     TRY(open_attribute(g, p, attributes, "NORMAL", 3, &p->normals));
     TRY(open_attribute(g, p, attributes, set, 2, &p->uvs));
     TRY(open_indices(g, json, p));
-    if (json_object_get(attributes, "COLOR_0"))
-        flat_note(g->flat, "colours of vertices are ignored");
     note_rest(g, json);
     p->corners = p->indices.count ? p->indices.count : p->positions.count;
     p->triangles = p->mode == TRIANGLES ? p->corners / 3 : p->corners > 2 ? p->corners - 2 : 0;
@@ -244,14 +248,40 @@ static status visit_all(walk *w, const uint32_t *parent_plus_1, status (*visit)(
 
 /* --- the first traversal: counts triangles, finds materials and attributes --- */
 
+/* The colour of all vertices of a primitive; false: they differ, which a mesh cannot have here. */
+static status find_tint(gltf_file *g, const primitive *p, double tint[3], bool *one)
+{
+    gltf_accessor colors;
+    double color[4];
+    *one = true;
+    TRY(open_attribute(g, p, p->attributes, "COLOR_0", 0, &colors));
+    for (size_t i = 0; colors.count && *one && i < p->positions.count; i++) {
+        gltf_accessor_get(&colors, i, color);
+        if (i == 0)
+            memcpy(tint, color, 3 * sizeof *tint);
+        *one = memcmp(tint, color, 3 * sizeof *tint) == 0;
+    }
+    return STATUS_OK;
+}
+
 static status count_primitive(walk *w, const primitive *p, size_t node)
 {
     (void)node;
+    gltf_file *g = w->g;
+    double tint[3] = {1, 1, 1};
+    bool one;
     w->triangles += p->triangles;
     w->vertices += p->positions.count;
-    w->material_used[p->material < 0 ? gltf_count(w->g, "materials") : (size_t)p->material] = 1;
-    w->g->flat->with_normals |= p->normals.count > 0;
-    w->g->flat->with_uvs |= p->uvs.count > 0;
+    g->flat->with_normals |= p->normals.count > 0;
+    g->flat->with_uvs |= p->uvs.count > 0;
+    TRY(find_tint(g, p, tint, &one));
+    tinted *m = &w->used[p->material < 0 ? gltf_count(g, "materials") : (size_t)p->material];
+    if (!one || (m->used && memcmp(tint, m->tint, sizeof tint) != 0)) {
+        memcpy(tint, (double[3]){1, 1, 1}, sizeof tint);
+        flat_note(g->flat, "colours of vertices are ignored where they differ within a material");
+    }
+    m->used = true;
+    memcpy(m->tint, tint, sizeof tint);
     return STATUS_OK;
 }
 
@@ -262,8 +292,8 @@ static status number_slots(walk *w)
     if (!w->slot_of)
         return no_memory_for(w->g->req, w->g->why);
     for (size_t i = 0; i <= count; i++)
-        if (w->material_used[i])
-            TRY(gltf_material_slot(w->g, i < count ? (int64_t)i : -1, &w->slot_of[i]));
+        if (w->used[i].used)
+            TRY(gltf_material_slot(w->g, i < count ? (int64_t)i : -1, w->used[i].tint, &w->slot_of[i]));
     return STATUS_OK;
 }
 
@@ -513,9 +543,9 @@ static status read_scene(walk *w)
     uint32_t *parent_plus_1 = calloc(nodes + 1, sizeof *parent_plus_1);
     w->visited = calloc(nodes + 1, sizeof *w->visited);
     w->world = malloc((nodes + 1) * sizeof *w->world);
-    w->material_used = calloc(gltf_count(g, "materials") + 1, 1);
-    status code = parent_plus_1 && w->visited && w->world && w->material_used ? find_parents(g, parent_plus_1)
-                                                                              : no_memory_for(g->req, g->why);
+    w->used = calloc(gltf_count(g, "materials") + 1, sizeof *w->used);
+    status code = parent_plus_1 && w->visited && w->world && w->used ? find_parents(g, parent_plus_1)
+                                                                     : no_memory_for(g->req, g->why);
     THEN(code, visit_all(w, parent_plus_1, count_primitive));
     THEN(code, flat_reserve(g->req, g->flat, w->triangles, g->why));
     THEN(code, number_slots(w));
@@ -526,8 +556,7 @@ static status read_scene(walk *w)
     THEN(code, visit_all(w, parent_plus_1, append_primitive));
     if (code == STATUS_OK && g->flat->triangle_count == 0)
         code = flat_reserve(g->req, g->flat, 0, g->why); /* all were left out */
-    free(parent_plus_1), free(w->visited), free(w->world), free(w->material_used), free(w->slot_of),
-        free(w->join.table);
+    free(parent_plus_1), free(w->visited), free(w->world), free(w->used), free(w->slot_of), free(w->join.table);
     return code;
 }
 

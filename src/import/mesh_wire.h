@@ -28,9 +28,9 @@ enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
 enum { MESH_WIRE_GIVEN = 1 };                      /* flag of a material: the file defines it */
-/* What an image's alpha means: the file does not say; nothing; below alpha_cutoff there is no surface; it is the
- * opacity. */
-enum { MESH_WIRE_ALPHA_UNSAID, MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
+/* What the alpha of a material's image, times its opacity, means: nothing; no surface where it is below
+ * alpha_cutoff; the opacity. */
+enum { MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
 enum { MESH_WIRE_REPEAT, MESH_WIRE_MIRROR, MESH_WIRE_CLAMP };
 enum { MESH_WIRE_TRILINEAR, MESH_WIRE_BILINEAR, MESH_WIRE_NEAREST };
 
@@ -45,7 +45,7 @@ typedef struct mesh_wire_header {
 /* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
-    double alpha_cutoff; /* of the image's alpha, at least 0; where it may be more than 1, nothing is left */
+    double alpha_cutoff; /* with MESH_WIRE_ALPHA_MASK, at least 0 */
     double transmission; /* of glass: the fraction of the light that is not reflected; its opacity is then that of thin
                             glass */
     double attenuation_color[3], attenuation_distance; /* of a volume: its transmittance after that way; 0: clear */

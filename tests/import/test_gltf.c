@@ -403,21 +403,46 @@ static void alpha_has_a_mode(void **state)
     (void)state;
     static const struct {
         const char *text;
-        int mode;
+        unsigned mode;
         double opacity, cutoff;
     } cases[] = {
         {"'pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}", MESH_WIRE_ALPHA_OPAQUE, 1, 0},
         {"'alphaMode':'BLEND','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}", MESH_WIRE_ALPHA_BLEND, 0.25, 0},
-        {"'alphaMode':'MASK','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}", MESH_WIRE_ALPHA_MASK, 0, 2},
+        {"'alphaMode':'MASK','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}", MESH_WIRE_ALPHA_MASK, 0, 0.5},
         {"'alphaMode':'MASK','alphaCutoff':0.125,'pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}",
-         MESH_WIRE_ALPHA_MASK, 1, 0.5},
+         MESH_WIRE_ALPHA_MASK, 1, 0.125},
         {"'alphaMode':'MASK'", MESH_WIRE_ALPHA_MASK, 1, 0.5},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         mesh_import *got = with_material(cases[i].text, "");
         const imported_material *m = &got->materials[0];
         if (m->alpha_mode != cases[i].mode || m->opacity != cases[i].opacity || m->alpha_cutoff != cases[i].cutoff)
-            fail_msg("%s: mode %d, opacity %g, cutoff %g", cases[i].text, m->alpha_mode, m->opacity, m->alpha_cutoff);
+            fail_msg("%s: mode %u, opacity %g, cutoff %g", cases[i].text, m->alpha_mode, m->opacity, m->alpha_cutoff);
+        mesh_import_destroy(got);
+    }
+}
+
+#define COLORS(type)                                                                 \
+    DOCUMENT(ONE_NODE, "{'attributes':{'POSITION':0,'COLOR_0':1},'material':0}",     \
+             POSITIONS "," ACCESSOR(1, 5126, 3, type), VIEW(0, 36) "," VIEW(36, 48), \
+             ",'materials':[{'pbrMetallicRoughness':{'baseColorFactor':[0.5,1,1,1]}}]")
+
+static void colors_of_vertices_are_the_materials(void **state)
+{
+    (void)state;
+    for (int differ = 0; differ < 2; differ++) {
+        bytes b = three();
+        for (int i = 0; i < 3; i++)
+            add_floats(&b, (float[4]){0.5F, 0.25F, differ && i == 2 ? 1.0F : 0.125F, 1}, 4);
+        mesh_import *got = read_document(COLORS("VEC4"), b);
+        const double *color = got->materials[0].color;
+        if (differ) {
+            assert_true(color[0] == 0.5 && color[1] == 1 && color[2] == 1);
+            assert_non_null(strstr(got->note, "colours of vertices are ignored where they differ"));
+        } else {
+            assert_true(color[0] == 0.25 && color[1] == 0.25 && color[2] == 0.125);
+            assert_null(got->note);
+        }
         mesh_import_destroy(got);
     }
 }
@@ -543,6 +568,7 @@ int main(void)
         cmocka_unit_test(mistakes_have_their_place),
         cmocka_unit_test(small_files_need_little_memory),
         cmocka_unit_test(alpha_has_a_mode),
+        cmocka_unit_test(colors_of_vertices_are_the_materials),
         cmocka_unit_test(images_inside_the_file_are_carried),
         cmocka_unit_test(texture_coordinates_are_chosen_and_moved),
         cmocka_unit_test(glass_has_its_numbers),

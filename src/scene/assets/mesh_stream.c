@@ -201,7 +201,7 @@ static status read_material(const mesh_source *source, uint32_t image_count, imp
     m->transmission = record.transmission;
     m->attenuation_distance = record.attenuation_distance;
     m->dispersion = record.dispersion;
-    m->alpha_mode = (int)record.alpha_mode;
+    m->alpha_mode = record.alpha_mode;
     m->wrap_u = (int)record.wrap_u;
     m->wrap_v = (int)record.wrap_v;
     m->filter = (int)record.filter;

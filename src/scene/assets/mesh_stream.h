@@ -34,11 +34,11 @@ typedef struct imported_material {
     double shininess;    /* Phong exponent: Ns */
     double opacity;      /* 0 to 1: d, or 1 - Tr; glTF's alpha where it blends, times 1 - transmission */
     double ior;          /* at least 1: Ni, KHR_materials_ior */
-    double alpha_cutoff; /* of a mask: at least 0; above 1 nothing is left */
+    double alpha_cutoff; /* with MESH_WIRE_ALPHA_MASK */
     double transmission; /* KHR_materials_transmission, 0 to 1 */
     double attenuation_color[3], attenuation_distance; /* KHR_materials_volume; distance 0: clear */
     double dispersion;                                 /* KHR_materials_dispersion: 20 / Abbe's number; 0: none */
-    int alpha_mode;             /* MESH_WIRE_ALPHA_* of import/mesh_wire.h: what the alpha of the image means */
+    uint32_t alpha_mode;        /* MESH_WIRE_ALPHA_OPAQUE, _MASK or _BLEND (import/mesh_wire.h) */
     int wrap_u, wrap_v, filter; /* of the image: MESH_WIRE_REPEAT and so on */
     char *texture; /* path of the diffuse image (map_Kd, glTF baseColorTexture), NULL if there is none; mesh_stream_read
                       leaves it as written in the file */
