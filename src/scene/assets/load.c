@@ -1,5 +1,4 @@
 /* Loads the files of a scene (background image, textures, meshes), and makes its generated meshes. */
-#include "base/budget.h"
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/random.h"
@@ -241,22 +240,12 @@ static status make_face_materials(const mesh_import *imported, const char *mesh_
     return code;
 }
 
-/* What a limit of the program's memory leaves for the importer; 0: its default. */
-static uint64_t memory_for_import(void)
-{
-    bool chosen;
-    const uint64_t left = memory_budget_left(&chosen);
-    return !chosen ? 0 : left > 0 ? left : 1;
-}
-
 static status read_mesh_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why)
 {
     const bool points = mesh_is_points(path),
                right_handed = m->handedness == HANDEDNESS_FILE ? !points : m->handedness == HANDEDNESS_RIGHT;
-    const mesh_limits import_limits = {.root = limits->root,
-                                       .triangles = limits->triangles,
-                                       .memory_bytes = memory_for_import(),
-                                       .right_handed = right_handed};
+    const mesh_limits import_limits = {
+        .root = limits->root, .triangles = limits->triangles, .right_handed = right_handed};
     mesh_import *imported;
     TRY(points ? mesh_points_read(path, limits->root, right_handed, &imported, why)
                : mesh_read_file(path, &import_limits, &imported, why));

@@ -33,7 +33,11 @@ mesh_limits mesh_limits_complete(const mesh_limits *limits)
     all.vertices = !all.vertices                      ? (size_t)1 << 26
                    : all.vertices > MESH_VERTICES_MAX ? MESH_VERTICES_MAX
                                                       : all.vertices;
-    all.memory_bytes = all.memory_bytes ? all.memory_bytes : (uint64_t)4 << 30;
+    if (!all.memory_bytes) {
+        bool chosen;
+        const uint64_t left = memory_budget_left(&chosen);
+        all.memory_bytes = !chosen ? (uint64_t)4 << 30 : left > 0 ? left : 1;
+    }
     all.wall_s = all.wall_s > 0 ? all.wall_s : 60;
     return all;
 }
@@ -211,18 +215,30 @@ static status read_material(const mesh_source *source, uint32_t image_count, imp
     return check_numbers(m, why);
 }
 
+/* Reads an image in pieces, so that memory is only taken for bytes that arrive. */
+static status read_image(const mesh_source *source, uint64_t size, imported_image *into, diagnostic *why)
+{
+    enum { PIECE = 1 << 20 };
+    size_t room = 0;
+    while (into->size < size) {
+        const size_t left = (size_t)size - into->size, piece = left < PIECE ? left : PIECE;
+        if (!GROW(into->bytes, room, into->size + piece))
+            return no_memory(why);
+        TRY(source->read(source->context, into->bytes + into->size, piece, why));
+        into->size += piece;
+    }
+    return STATUS_OK;
+}
+
 static status read_images(const mesh_source *source, mesh_import *into, diagnostic *why)
 {
     for (int i = 0; i < into->image_count; i++) {
         uint64_t size;
         TRY(source->read(source->context, &size, sizeof size, why));
-        if (size == 0 || size > SIZE_MAX / 2)
+        if (size == 0 || size > SIZE_MAX / 4)
             return damaged(why, "the size of an image is out of range");
         TRY(memory_budget_check(size, "use a smaller image", why, "an image inside the mesh file"));
-        into->images[i] = (imported_image){malloc((size_t)size), (size_t)size};
-        if (!into->images[i].bytes)
-            return no_memory(why);
-        TRY(source->read(source->context, into->images[i].bytes, (size_t)size, why));
+        TRY(read_image(source, size, &into->images[i], why));
     }
     return STATUS_OK;
 }

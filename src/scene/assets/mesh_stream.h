@@ -12,7 +12,8 @@
 /* Limits for one file. 0 means the default. */
 typedef struct mesh_limits {
     size_t triangles, vertices; /* defaults 2^25 and 2^26 */
-    uint64_t memory_bytes;      /* memory of the importer process; default 4 GiB */
+    uint64_t memory_bytes;      /* memory of the importer process; default: what a limit of the program's leaves, or 4
+                         GiB */
     double wall_s;              /* default 60 */
     bool right_handed;          /* of the file's axes: the mesh is mirrored into the left-handed world */
     const char *root;           /* folder of the file and of all files that it refers to (base/file.h); NULL or "": no
