@@ -30,6 +30,7 @@ typedef struct mesh_child {
     bool late;      /* killed after the deadline */
     bool cancelled; /* killed because the work was cancelled (base/cancel.h) */
     bool cut;       /* its standard output ended too early */
+    bool ended;     /* by itself, or by somebody else's signal */
     int error;      /* errno of a failed read of its standard output */
 } mesh_child;
 
@@ -255,16 +256,20 @@ static int reap(mesh_child *child, bool still_wanted)
         else if (ready < 0 && !is_transient(errno))
             break;
     }
+    int state = -1;
+    /* After the end of its output a child ends within this time, unless it only closed its pipes. */
+    if (child->cut && !child->late && !child->cancelled && child->handle >= 0)
+        poll(&(struct pollfd){.fd = child->handle, .events = POLLIN}, 1, 200);
+    child->ended = waitpid(child->pid, &state, WNOHANG) == child->pid;
     /* A child that is already exiting keeps its own exit status: it no longer receives signals. */
-    if (child->handle >= 0)
+    if (!child->ended && child->handle >= 0)
         pidfd_send_signal(child->handle, SIGKILL, NULL, 0);
-    else
+    else if (!child->ended)
         kill(child->pid, SIGKILL);
     close_end(&child->handle);
     close_end(&child->out);
     close_end(&child->err);
-    int state = -1;
-    while (waitpid(child->pid, &state, 0) < 0)
+    while (!child->ended && waitpid(child->pid, &state, 0) < 0)
         if (errno != EINTR)
             return -1;
     return state;
@@ -324,7 +329,7 @@ static status finish(mesh_child *child, const char *path, const mesh_limits *lim
             return diagnose(why, STATUS_BAD_INPUT,
                             "use a mesh of less detail, or export the file again if it is damaged",
                             "reading the file took more CPU time than the limit of %g s", limits->wall_s);
-        if (signal == SIGKILL && child->cut) /* reap() kills only after the end of the answer, or after a refusal */
+        if (signal == SIGKILL && child->ended)
             return diagnose(why, STATUS_FAILURE, "set --memory-limit, or use a mesh of less detail",
                             "the importer was killed, as the system does when memory runs out");
         if (signal == SIGKILL && code != STATUS_OK)
