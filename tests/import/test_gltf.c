@@ -294,13 +294,14 @@ static void one_scene_is_read(void **state)
     }
 }
 
-/* Two joints, each moved; the inverse matrix of the second moves back by 10. The third vertex is half of each. */
+/* Two joints, each moved; the inverse matrix of the second moves back by 10. The third vertex is half of each: its
+ * weights are divided by their sum. */
 static void skins_follow_their_joints(void **state)
 {
     (void)state;
     bytes b = three();
     add(&b, "\0\1\0\0\0\1\0\0\0\1\0\0", 12);
-    add_floats(&b, (float[12]){1, 0, 0, 0, 0, 1, 0, 0, 0.5F, 0.5F, 0, 0}, 12);
+    add_floats(&b, (float[12]){1, 0, 0, 0, 0, 1, 0, 0, 2, 2, 0, 0}, 12);
     for (int k = 0; k < 2; k++)
         add_floats(&b, (float[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, k ? -10.0F : 0.0F, 0, 0, 1}, 16);
     mesh_import *got = read_document(DOCUMENT("{'children':[1,2,3]},{'translation':[0,0,4]},{'translation':[30,0,0]},"
