@@ -32,8 +32,21 @@ void image_destroy(image *img)
 {
     if (img && __atomic_sub_fetch(&img->owners, 1, __ATOMIC_ACQ_REL) <= 0) {
         free(img->pixel);
+        free(img->alpha);
         free(img);
     }
+}
+
+status image_add_alpha(image *img, diagnostic *why)
+{
+    const size_t count = (size_t)img->width * (size_t)img->height;
+    TRY(memory_budget_check(count * sizeof *img->alpha, "use a smaller one", why, "the alpha of %d x %d pixels",
+                            img->width, img->height));
+    if (!(img->alpha = malloc(count * sizeof *img->alpha)))
+        return out_of_memory(why);
+    for (size_t i = 0; i < count; i++)
+        img->alpha[i] = 1.0F;
+    return STATUS_OK;
 }
 
 image *image_retain(const image *img)

@@ -10,12 +10,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. coded_bits is 8 or 16 if
- * image_read decoded the pixels from sRGB values with that many bits, otherwise 0. tone: exposure and curve for files
- * with 8 bits. */
+/* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. alpha[y * width + x], 0 to 1,
+ * NULL: 1 everywhere; only textures use it, and neither a packed nor a written image has it. Colours are not multiplied
+ * by alpha. coded_bits is 8 or 16 if image_read decoded the pixels from sRGB values with that many bits, otherwise 0.
+ * tone: exposure and curve for files with 8 bits. */
 typedef struct image {
     int width, height;
-    float *pixel;
+    float *pixel, *alpha;
     int coded_bits, owners;
     image_tone tone;
 } image;
@@ -28,6 +29,9 @@ void image_destroy(image *img);
 
 /* Adds a reference to an image that is constant from now on: the last image_destroy releases it. Thread safe. */
 image *image_retain(const image *img);
+
+/* Gives the image alpha: 1 everywhere, for the caller to change. STATUS_FAILURE without memory. */
+status image_add_alpha(image *img, diagnostic *why);
 
 /* Packs an image as bytes (base/pack.h), without its tone, and unpacks it; pixel values are not checked. The caller
  * owns the unpacked image. STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without memory. */
@@ -95,8 +99,8 @@ bool image_is_png(const void *bytes, size_t size);
  * STATUS_BAD_INPUT if the file is damaged before the pixels, or the text is damaged or longer than limit. */
 status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
-/* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or grey,
- * either byte order, finite) or BMP (24 bits, uncompressed), recognised by the first bytes, not by the name; PNG, JPEG
+/* Reads PNG (any depth and kind; colours as they are stored, whatever their alpha), JPEG (grey or RGB), PFM (colour or
+ * grey, either byte order, finite) or BMP (24 bits, uncompressed), recognised by the first bytes, not by the name; PNG, JPEG
  * and BMP are decoded from sRGB to linear. Truncated or damaged files and more than 2^28 pixels are STATUS_BAD_INPUT.
  * file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);

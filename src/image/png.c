@@ -213,18 +213,18 @@ static unsigned sample(const png_reading *job, const unsigned char *row, size_t 
     return job->bits == 8 ? row[index] : (unsigned)row[2 * index] << 8 | row[2 * index + 1];
 }
 
-/* Linear values, blended over black with alpha, which is linear itself (PNG specification 13.16). */
+/* Linear values, and alpha, which is linear in the file, too; PNG does not multiply colours by it (PNG specification,
+ * 12.3). */
 static void store_row(png_reading *job, const unsigned char *row, int y, size_t channels)
 {
-    float *pixel = job->img->pixel + (size_t)y * (size_t)job->img->width * 3;
+    const size_t first = (size_t)y * (size_t)job->img->width;
+    float *pixel = job->img->pixel + 3 * first;
     for (size_t x = 0; x < (size_t)job->img->width; x++) {
         for (size_t channel = 0; channel < 3; channel++)
             pixel[3 * x + channel] = job->linear[sample(job, row, channels * x + channel)];
-        if (channels == 4) {
-            double alpha = (double)sample(job, row, 4 * x + 3) / (job->bits == 8 ? 255.0 : 65535.0);
-            for (size_t channel = 0; channel < 3; channel++)
-                pixel[3 * x + channel] = (float)(alpha * (double)pixel[3 * x + channel]);
-        }
+        if (channels == 4)
+            job->img->alpha[first + x] =
+                (float)((double)sample(job, row, 4 * x + 3) / (job->bits == 8 ? 255.0 : 65535.0));
     }
 }
 
@@ -232,6 +232,8 @@ static bool allocate(png_reading *job, long long width, long long height, bool i
 {
     job->code =
         codec_begin(width, height, job->library.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
+    if (job->code == STATUS_OK && png_get_channels(job->library.png, job->library.info) == 4)
+        job->code = image_add_alpha(job->img, job->why);
     if (job->code != STATUS_OK)
         return false;
     if (interlaced)

@@ -53,6 +53,7 @@ void texture_retain(const texture *t)
 void texture_release(const texture *t)
 {
     if (t && __atomic_sub_fetch(&((texture *)t)->owners, 1, __ATOMIC_ACQ_REL) == 0) {
+        texture_release(t->covered);
         free(t->block);
         free((texture *)t);
     }
@@ -83,7 +84,7 @@ static cover cover_of(int texel_index, int from, int to)
 
 static texel mean_of(const texture_level *from, cover columns, cover rows)
 {
-    double r = 0.0, g = 0.0, b = 0.0;
+    double r = 0.0, g = 0.0, b = 0.0, alpha = 0.0;
     for (int y = 0; y < rows.count; y++) {
         const texel *row = from->texels + (size_t)(rows.first + y) * (size_t)from->width + columns.first;
         for (int x = 0; x < columns.count; x++) {
@@ -91,9 +92,10 @@ static texel mean_of(const texture_level *from, cover columns, cover rows)
             r += weight * (double)row[x].r;
             g += weight * (double)row[x].g;
             b += weight * (double)row[x].b;
+            alpha += weight * (double)row[x].alpha;
         }
     }
-    return (texel){.r = (float)r, .g = (float)g, .b = (float)b};
+    return (texel){.r = (float)r, .g = (float)g, .b = (float)b, .alpha = (float)alpha};
 }
 
 /* Computes level 1 and above from level 0; sizes and memory are set. */
@@ -108,6 +110,49 @@ static void build_pyramid(texture *t)
                     mean_of(from, cover_of(x, from->width, to->width), rows);
         }
     }
+}
+
+/* ---- alpha ---- */
+
+static size_t texels_of(const texture *t)
+{
+    return (size_t)t->level[0].width * (size_t)t->level[0].height;
+}
+
+static bool has_alpha(const texture *t)
+{
+    bool any = false;
+    for (size_t i = 0; i < texels_of(t); i++)
+        any |= t->block[i].alpha < 1.0F;
+    return any;
+}
+
+static texel multiplied(texel c)
+{
+    return (texel){.r = c.r * c.alpha, .g = c.g * c.alpha, .b = c.b * c.alpha, .alpha = c.alpha};
+}
+
+/* Computes the levels of a texture whose image is complete, and its covered texture if it has alpha. */
+static status complete(texture *t, diagnostic *why)
+{
+    const int width = t->level[0].width, height = t->level[0].height;
+    build_pyramid(t);
+    if (!has_alpha(t))
+        return cancel_check(why);
+    TRY(memory_budget_check(t->block_bytes, "use a smaller one", why, "the alpha of %d x %d texels", width, height));
+    t->covered = allocate_texture(width, height, t->wrap_u, t->wrap_v, t->filter);
+    if (!t->covered)
+        return out_of_memory(why);
+    t->covered->multiplied = true;
+    for (size_t i = 0; i < texels_of(t); i++)
+        t->covered->block[i] = multiplied(t->block[i]);
+    build_pyramid(t->covered);
+    return cancel_check(why);
+}
+
+const texture *texture_covered(const texture *t)
+{
+    return t->covered;
 }
 
 /* ---- creation ---- */
@@ -146,12 +191,14 @@ static void copy_pixels(texture *t, const image *img, int coded_bits)
         codec_bytes_prepare(&bytes);
     const texture_level *to = &t->level[0];
     for (int y = 0; y < to->height && !cancel_asked(); y++) {
-        const float *from = img->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
+        const size_t first = (size_t)(to->height - 1 - y) * (size_t)to->width;
+        const float *from = img->pixel + 3 * first;
         texel *row = to->texels + (size_t)y * (size_t)to->width;
         for (int x = 0; x < to->width; x++, from += 3) {
             row[x] = (texel){.r = restore(&bytes, coded_bits, from[0]),
                              .g = restore(&bytes, coded_bits, from[1]),
-                             .b = restore(&bytes, coded_bits, from[2])};
+                             .b = restore(&bytes, coded_bits, from[2]),
+                             .alpha = img->alpha ? img->alpha[first + (size_t)x] : 1.0F};
         }
     }
 }
@@ -169,8 +216,7 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
     copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
-    build_pyramid(t);
-    const status code = cancel_check(why);
+    const status code = complete(t, why);
     if (code == STATUS_OK)
         *out = t;
     else
@@ -211,14 +257,19 @@ vec3 texture_sample(const texture *t, double u, double v, double footprint)
     return c;
 }
 
+double texture_alpha(const texture *covered, double u, double v)
+{
+    return ISA_BASE_OF(texture_alpha)(covered, u, v);
+}
+
 uint64_t texture_hash(const texture *t, uint64_t hash)
 {
     const texture_level *l = &t->level[0];
     const int64_t size[2] = {l->width, l->height};
     hash = hash_words(hash, size, 2);
     for (size_t i = 0; i < (size_t)l->width * (size_t)l->height; i++) {
-        const float c[3] = {l->texels[i].r, l->texels[i].g, l->texels[i].b};
-        hash = hash_numbers(hash, c, 3, sizeof *c);
+        const float c[4] = {l->texels[i].r, l->texels[i].g, l->texels[i].b, l->texels[i].alpha};
+        hash = hash_numbers(hash, c, t->covered ? 4 : 3, sizeof *c);
     }
     return hash;
 }
@@ -228,11 +279,6 @@ uint64_t texture_hash(const texture *t, uint64_t hash)
 typedef struct texture_head {
     int64_t width, height, wrap_u, wrap_v, filter;
 } texture_head;
-
-static size_t texels_of(const texture *t)
-{
-    return (size_t)t->level[0].width * (size_t)t->level[0].height;
-}
 
 status texture_pack(const texture *t, pack_writer *to, diagnostic *why)
 {
@@ -247,11 +293,11 @@ static status unpack_texels(texture *t, pack_reader *from, diagnostic *why)
     TRY(pack_get(from, t->level[0].texels, texels_of(t) * sizeof *texels, why));
     bool finite = true;
     for (size_t i = 0; i < texels_of(t); i++)
-        finite &= isfinite(texels[i].r) && isfinite(texels[i].g) && isfinite(texels[i].b);
+        finite &= isfinite(texels[i].r) && isfinite(texels[i].g) && isfinite(texels[i].b) && texels[i].alpha >= 0.0F &&
+                  texels[i].alpha <= 1.0F;
     if (!finite)
         return pack_damaged(why, "a texel is not a finite number");
-    build_pyramid(t);
-    return STATUS_OK;
+    return complete(t, why);
 }
 
 status texture_unpack(pack_reader *from, const texture **out, diagnostic *why)

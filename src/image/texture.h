@@ -1,8 +1,7 @@
 /* Textures: images sampled by surface coordinates. u points right and v up; the image covers the unit square, (0, 0) is
  * its lower left corner, and the centre of texel x in a row of w is u = (x + 1/2) / w. Filtering is linear, in doubles
- * with + - * / and floor only: bit-identical everywhere. Alpha is treated as in image_read: blended over black, then
- * dropped. A texture is immutable and shared: texture_retain and texture_release count references (thread safe);
- * sampling needs no lock. It keeps nothing of its source image. */
+ * with + - * / and floor only: bit-identical everywhere. A texture is immutable and shared: texture_retain and
+ * texture_release count references (thread safe); sampling needs no lock. It keeps nothing of its source image. */
 #pragma once
 
 #include "base/isa.h"
@@ -59,7 +58,17 @@ typedef void texture_tinter(const texture *t, int count, const double *u, const 
                             double *r, double *g, double *b);
 ISA_DECLARE(texture_tinter, texture_tint)
 
-/* Adds size and texels of the image itself to a hash (base/hash.h). */
+/* Alpha. A texture by itself ignores it: its colours are those of the file. If some texel's alpha is below 1, it has a
+ * covered texture besides, which texture_covered returns; otherwise that is NULL. It is borrowed, and lives as long as
+ * t. Its texels and levels are filtered after multiplication by alpha, and the colour is then divided by the filtered
+ * alpha (Porter and Duff, "Compositing digital images", SIGGRAPH 1984): what a transparent texel stores as colour,
+ * often black or white, does not show at the edges of the texels around it. */
+const texture *texture_covered(const texture *t);
+/* The alpha of a covered texture at (u, v), 0 to 1: by the nearest texel or between the nearest four, always of the
+ * image itself, so that it does not depend on who looks from how far. */
+double texture_alpha(const texture *covered, double u, double v);
+
+/* Adds size and texels of the image itself to a hash (base/hash.h), with alpha if some is below 1. */
 uint64_t texture_hash(const texture *t, uint64_t hash);
 
 /* A texture as bytes (base/pack.h): the image itself travels, and the receiver computes the smaller levels again.

@@ -3,10 +3,14 @@
 #pragma once
 
 #include "image/texture.h"
+#include <stdbool.h>
 
-/* Padded to 16 bytes: one load per texel, and no texel straddles two cache lines. */
+typedef double texture_alpha_reader(const texture *covered, double u, double v);
+ISA_DECLARE(texture_alpha_reader, texture_alpha)
+
+/* One load per texel, and no texel straddles two cache lines. */
 typedef struct texel {
-    float r, g, b, unused;
+    float r, g, b, alpha;
 } texel;
 
 /* Rows from the bottom, like v: texels[y * width + x]. */
@@ -22,5 +26,7 @@ struct texture {
     texture_level level[TEXTURE_LEVELS_MAX];
     texel *block;
     size_t block_bytes;
+    struct texture *covered; /* see texture_covered; NULL: none */
+    bool multiplied;         /* a covered texture: colours are multiplied by alpha */
     size_t owners; /* modified atomically */
 };

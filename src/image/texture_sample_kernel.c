@@ -142,6 +142,27 @@ ALWAYS_INLINE void tint_strip(const texture *t, texture_filter filter, int count
     }
 }
 
+/* tint_strip for a covered texture: one that is seen has alpha above 0 at its full size, and so in every level. */
+static void tint_covered(const texture *t, int count, const double *u, const double *v, const double *height, double *r,
+                         double *g, double *b)
+{
+    for (int i = 0; i < count; i++) {
+        const color4 c = t->filter == TEXTURE_NEAREST    ? nearest(t, u[i], v[i])
+                         : t->filter == TEXTURE_BILINEAR ? bilinear(t, 0, u[i], v[i])
+                                                         : trilinear(t, u[i], v[i], height[i]);
+        const double part = c[3] > 0.0 ? 1.0 / c[3] : 0.0;
+        r[i] *= part * c[0], g[i] *= part * c[1], b[i] *= part * c[2];
+    }
+}
+
+double KERNEL(texture_alpha)(const texture *t, double u, double v)
+{
+    double x, y;
+    fold(t->wrap_u, 1, &u, &x);
+    fold(t->wrap_v, 1, &v, &y);
+    return (t->filter == TEXTURE_NEAREST ? nearest(t, x, y) : bilinear(t, 0, x, y))[3];
+}
+
 void KERNEL(texture_tint)(const texture *t, int count, const double *u, const double *v, const double *footprint,
                           double *r, double *g, double *b)
 {
@@ -150,6 +171,11 @@ void KERNEL(texture_tint)(const texture *t, int count, const double *u, const do
         const int n = count - first < STRIP ? count - first : STRIP;
         fold(t->wrap_u, n, u + first, x);
         fold(t->wrap_v, n, v + first, y);
+        if (t->multiplied) {
+            find_heights(t, n, footprint + first, height);
+            tint_covered(t, n, x, y, height, r + first, g + first, b + first);
+            continue;
+        }
         switch (t->filter) {
         case TEXTURE_NEAREST: tint_strip(t, TEXTURE_NEAREST, n, x, y, height, r + first, g + first, b + first); break;
         case TEXTURE_BILINEAR: tint_strip(t, TEXTURE_BILINEAR, n, x, y, height, r + first, g + first, b + first); break;

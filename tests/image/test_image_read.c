@@ -168,6 +168,7 @@ static void write_kind(const png_kind *kind, const char *path)
     assert_int_equal(fclose(file), 0);
 }
 
+/* Channel 3 is alpha. */
 static double expected_channel(const png_kind *kind, int x, int y, int channel)
 {
     double full = (1u << kind->depth) - 1, alpha = 1.0;
@@ -176,7 +177,7 @@ static double expected_channel(const png_kind *kind, int x, int y, int channel)
     if (kind->color == PNG_COLOR_TYPE_PALETTE) {
         png_color entry = palette_entry(first);
         double value = (channel == 0 ? entry.red : channel == 1 ? entry.green : entry.blue) / 255.0;
-        return srgb_decode(value) * (kind->transparent ? (first * 53 & 255) / 255.0 : 1.0);
+        return channel < 3 ? srgb_decode(value) : kind->transparent ? (first * 53 & 255) / 255.0 : 1.0;
     }
     if (channels % 2 == 0) {
         alpha = sample_at(kind, x, y, channels - 1) / full;
@@ -186,7 +187,7 @@ static double expected_channel(const png_kind *kind, int x, int y, int channel)
             same = same && sample_at(kind, x, y, c) == sample_at(kind, 2, 3, c);
         alpha = same ? 0.0 : 1.0;
     }
-    return alpha * srgb_decode(sample_at(kind, x, y, channels >= 3 ? channel : 0) / full);
+    return channel == 3 ? alpha : srgb_decode(sample_at(kind, x, y, channels >= 3 ? channel : 0) / full);
 }
 
 static void check_kind(const png_kind *kind)
@@ -198,9 +199,12 @@ static void check_kind(const png_kind *kind)
     assert_int_equal(image_read(path, &img, &bits, NULL), STATUS_OK);
     assert_int_equal(bits, kind->depth == 16 ? 16 : 8);
     assert_true(img->width == KIND_WIDTH && img->height == KIND_HEIGHT);
-    for (int i = 0; i < KIND_WIDTH * KIND_HEIGHT * 3; i++) {
-        double expected = expected_channel(kind, i / 3 % KIND_WIDTH, i / 3 / KIND_WIDTH, i % 3);
-        assert_true(fabs((double)img->pixel[i] - expected) < 1e-7);
+    assert_true((img->alpha != NULL) == (channels_of(kind->color) % 2 == 0 || kind->transparent));
+    for (int i = 0; i < KIND_WIDTH * KIND_HEIGHT; i++) {
+        const int x = i % KIND_WIDTH, y = i / KIND_WIDTH;
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs((double)img->pixel[3 * i + c] - expected_channel(kind, x, y, c)) < 1e-7);
+        assert_true(!img->alpha || fabs((double)img->alpha[i] - expected_channel(kind, x, y, 3)) < 1e-7);
     }
     image_destroy(img);
     free(path);
