@@ -83,7 +83,7 @@ typedef struct medium_segments {
     medium_segment segment[SEGMENTS_MAX];
 } medium_segments;
 
-/* An interface that a shadow ray crosses without refraction. */
+/* An interface that a ray crosses: one without refraction of a shadow ray, or one of a partial surface. */
 typedef struct ray_crossing {
     int ray, primitive;
     int before, after; /* priority indices */
@@ -101,6 +101,15 @@ typedef struct ray_crossings {
     void *context;
     ray_crossing crossings[CROSSINGS_MAX];
 } ray_crossings;
+
+/* How much of a partial surface is there, where a ray of a batch crosses it: 0 nothing, so that it is no interface; 1
+ * all. Between them, a ray that looks for its nearest interface meets the surface, and the caller divides its light; a
+ * shadow ray keeps the rest, 1 minus it. Values, and the order of calls for one ray, do not depend on the instruction
+ * set. */
+typedef struct surface_cover {
+    double (*of)(void *context, const ray_batch *rays, const ray_crossing *x);
+    void *context;
+} surface_cover;
 
 /* Per-column state of the search in a solid tree (geometry/regions/solid_tree.h). */
 typedef struct tree_columns {
@@ -142,6 +151,7 @@ typedef struct ray_scratch {
     medium_segments *segments; /* the caller's; NULL: medium segments are not recorded */
     mesh_scratch *meshes;      /* the caller's; may be NULL without meshes */
     ray_crossings *crossings;  /* the caller's; NULL: interfaces of shadow rays are not recorded */
+    surface_cover cover;       /* the caller's; used if the geometry is partial */
     tree_columns tree;
     solid_view view;
 } ray_scratch;

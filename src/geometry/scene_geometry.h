@@ -15,6 +15,10 @@
  * of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested
  * Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
+ * A partial surface is there at some points only, or lets a part of the light through; the caller decides how much of
+ * it is there at each crossing (surface_cover in rays.h). Where nothing of it is there, it is no interface. A partial
+ * mesh is an open surface even if it is closed; another partial solid contains points, and is not opaque.
+ *
  * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent of
  * wavelength: for a medium it stores a number (equal numbers, equal refractive indices: no interface between them),
  * whether it is opaque, and whether it absorbs. */
@@ -73,6 +77,7 @@ typedef struct region {
     const double *face_shadow_transmittance;
     bool attenuates; /* its medium attenuates light along the path */
     bool reflects;   /* its reflectance depends on the angle: shadow rays record crossings (ray_crossings) */
+    bool partial;    /* its surface is partial */
     int solid;       /* index of the solid it came from */
 } region;
 
@@ -99,6 +104,7 @@ typedef struct scene_geometry {
     uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; 0 with a tree */
     bool distinct;                  /* no two regions have equal media, and none has the surrounding medium */
     bool attenuates;                /* a region or the surrounding medium attenuates */
+    bool partial;                   /* some region is partial */
     struct instance_set *meshes;    /* all meshes; NULL without meshes */
     vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
@@ -109,7 +115,7 @@ typedef struct scene_geometry {
 /* Whether a region reduces the light along a shadow ray. With solid_shadows every region does. */
 static inline bool region_casts_shadow(const region *b, bool solid_shadows)
 {
-    return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->attenuates || b->reflects;
+    return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->attenuates || b->reflects || b->partial;
 }
 
 /* The shape of a region, without points. */
@@ -129,7 +135,7 @@ typedef struct region_source {
     bool opaque;
     double shadow_transmittance;
     const double *face_shadow_transmittance; /* by material slot; borrowed, or NULL */
-    bool attenuates, reflects;
+    bool attenuates, reflects, partial;
     int solid;
 } region_source;
 

@@ -105,6 +105,23 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_sink *t
     }
 }
 
+/* Notes an image with alpha that the material does not use. */
+static void hint_at_alpha(const scene *s, const solid *owner, const note_sink *taker)
+{
+    const int slots = face_material_slots(s, owner);
+    for (int slot = 0; slot < (slots > 0 ? slots : 1); slot++) {
+        const shading_material m = slots > 0 ? shading_material_of_face(s, owner, &owner->surface, slot)
+                                             : shading_material_of_solid(s, &owner->surface);
+        if (!m.img || m.surface.alpha != ALPHA_OPAQUE || m.surface.transparency > 0.0 || !texture_covered(m.img))
+            continue;
+        note_report(taker, owner->name, "alpha",
+                    slots > 0 ? "name a material of the scene like the faces' material, with alpha: mask or blend"
+                              : "set its alpha to mask or blend",
+                    "the image on %s has alpha, which is ignored", owner->name);
+        return;
+    }
+}
+
 static void hint_at_cover(const scene *s, const solid *hidden, const note_sink *taker)
 {
     const solid *cover = scene_cover(s, hidden);
@@ -389,6 +406,7 @@ void scene_hints(const scene *s, const note_sink *taker)
             hint_at_sheet(s, &s->solids[i], taker);
             hint_at_crystal(s, &s->solids[i], taker);
             hint_at_cover(s, &s->solids[i], taker);
+            hint_at_alpha(s, &s->solids[i], taker);
         }
     }
     hint_at_all_unseen(s, taker);

@@ -121,7 +121,7 @@ inert_rule overlaps_unseen, looks_the_same, unshaded, one_mesh, no_point_files, 
 
 inert_rule no_color_or_tint, is_black_surface, unlit, no_highlight, no_reflectivity, no_law, no_index, no_medium,
     nothing_reflected, opaque_rule, mirror_rule, constant_weights, film_unseen, sheet_unpassed, axis_unseen,
-    nothing_rough, unpassed, no_texture, no_color, one_color, covered, no_interface, unseen;
+    nothing_rough, unpassed, no_texture, no_alpha, no_color, one_color, covered, no_interface, unseen;
 
 /* --- the table: needs.c ---
  *

@@ -265,6 +265,24 @@ bool no_texture(const inert_case *c)
                      "the surface has no texture");
 }
 
+static bool say_no_alpha(const inert_case *c, const char *why)
+{
+    return inert_say(c, "no-alpha", "use a texture with alpha, on an opaque solid and with rays", "%s", why);
+}
+
+bool no_alpha(const inert_case *c)
+{
+    const texture_entry *t = c->m->texture[0] ? scene_find_texture(c->s, c->m->texture) : NULL;
+    if (is_drawn(c->s))
+        return say_no_alpha(c, "the rasteriser ignores alpha");
+    if (c->m->transparency > 0.0)
+        return say_no_alpha(c, "the surface of a transparent solid has no alpha");
+    if (!t || (t->data && !texture_covered(t->data)))
+        return say_no_alpha(c, t ? "its texture has no alpha" : "the surface has no texture");
+    return is_named(c, "alpha_cutoff") && c->m->alpha != ALPHA_MASK &&
+           inert_say(c, "no-mask", set_on(c, "alpha=mask").text, "its alpha is not mask");
+}
+
 bool one_color(const inert_case *c)
 {
     const vec3 a = c->m->color, b = c->m->checker_color;

@@ -202,6 +202,7 @@ static const needs_row rows[] = {
     NEEDS_SET(MATERIAL, "asymmetry", "scatter_per_m>0", "%.scatter_per_m=2"),
     NEEDS_SET(MATERIAL, "tint_distance", "color!=1,1,1", "%.color=0.9,0.7,0.5"),
     FACT(MATERIAL, "texture texture_size", no_texture),
+    FACT(MATERIAL, "alpha alpha_cutoff", no_alpha),
     NEEDS_SET(MATERIAL, "checker_color", "checker>0", "%.checker=0.2"),
     FACT(MATERIAL, "texture texture_size checker checker_color", no_color),
     FACT(MATERIAL, "checker", one_color),

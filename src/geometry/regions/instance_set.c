@@ -57,7 +57,7 @@ static instanced_mesh part_of(const instance_source *source, size_t first_instan
                             .tree = source->tree,
                             .primitive = source->primitive,
                             .priority_index = source->priority_index,
-                            .closed = shape->mesh->closed,
+                            .closed = shape->mesh->closed && !source->partial,
                             .turned = turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0,
                             .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0,
                             .rotation = rotation_from_deg(turn),

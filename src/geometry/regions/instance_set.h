@@ -81,6 +81,7 @@ typedef struct instance_source {
     const solid_shape *shape;
     const hierarchy *tree;
     int primitive, priority_index;
+    bool partial; /* an open surface, even if its mesh is closed */
 } instance_source;
 
 /* region_count: the highest priority index of the scene. */

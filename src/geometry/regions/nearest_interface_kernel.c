@@ -239,6 +239,8 @@ static void next_changes(const scene_geometry *g, const ray_batch *rays, int n, 
         surfaces(g->opaque_regions, n, hits->before, hits->after, hits->surface);
         mark_attention(g, n, s, hits, s->attention);
     }
+    for (int k = 0; g->partial && k < n; k++)
+        s->attention[k] |= mask_of(hits->hit_primitive[k] >= 0 && g->regions[hits->surface[k]].partial);
     for (int k = 0; g->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)(hits->hit_primitive[k] >= 0 && s->meshes->near[k]);
         s->meshes->until[k] = greater(hits->t[k], s->meshes->from[k]);
@@ -253,13 +255,78 @@ static void next_changes(const scene_geometry *g, const ray_batch *rays, int n, 
     }
 }
 
-/* Whether column k's crossing is an interface. */
-static bool is_interface(const scene_geometry *g, const ray_batch *rays, int k, ray_scratch *s, hit_batch *hits,
-                         instance_hit *mesh_hits)
+/* Whether the medium changes at column k's crossing. */
+static bool is_change(const scene_geometry *g, const ray_batch *rays, int k, ray_scratch *s, hit_batch *hits,
+                      instance_hit *mesh_hits)
 {
     if (!is_simple(g, k, s, hits) || (g->meshes && s->meshes->near[k]))
         KERNEL(merge_contacts)(g, rays, k, s, hits, mesh_hits);
     return g->regions[hits->before[k]].medium != g->regions[hits->after[k]].medium;
+}
+
+/* The priority index in the whole scene. */
+static int outer_region(const scene_geometry *g, int64_t r)
+{
+    return g->outer ? g->outer->outer_region[r] : (int)r;
+}
+
+/* The set, in the whole scene, of the primitives that contain the ray just before column k's crossing. */
+static uint64_t set_before(const scene_geometry *g, int k, const ray_scratch *s, const hit_batch *hits)
+{
+    if (g->outer)
+        return KERNEL(view_outer_set)(g->outer, hits->inside_before[k]);
+    return g->tree ? solid_tree_join(g->tree, (split_set){hits->inside_before[k], s->tree.before[k]})
+                   : hits->inside_before[k];
+}
+
+static ray_crossing crossing_of(const scene_geometry *g, int k, const ray_scratch *s, const hit_batch *hits,
+                                const instance_hit *mesh_hits)
+{
+    const int p = (int)hits->hit_primitive[k];
+    return (ray_crossing){.ray = s->ray[k],
+                          .primitive = g->outer ? g->outer->outer_primitive[p] : p,
+                          .before = outer_region(g, hits->before[k]),
+                          .after = outer_region(g, hits->after[k]),
+                          .t = hits->t[k],
+                          .inside = set_before(g, k, s, hits),
+                          .mesh = is_mesh(g, p) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
+}
+
+/* How much of the surface is there at column k's crossing. */
+static double covered(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s,
+                      const hit_batch *hits, const instance_hit *mesh_hits)
+{
+    if (!g->partial || !g->regions[hits->surface[k]].partial)
+        return 1.0;
+    const ray_crossing x = crossing_of(g, k, s, hits, mesh_hits);
+    return s->cover.of(s->cover.context, rays, &x);
+}
+
+/* Removes an open surface that is not there from column k's crossing; false if it is none. What is in contact with it
+ * remains: a leaf lies on a table. */
+static bool remove_open_surface(const scene_geometry *g, int k, const ray_scratch *s, hit_batch *hits)
+{
+    const uint64_t bit =
+        direct_bit(g, g->regions[hits->surface[k]].outside) & (g->meshes ? g->meshes->open_surfaces : 0);
+    if (!(hits->inside_after[k] & bit))
+        return false;
+    hits->inside_after[k] &= ~bit;
+    const uint64_t set = g->tree ? solid_tree_join(g->tree, (split_set){hits->inside_after[k], s->tree.after[k]})
+                                 : hits->inside_after[k];
+    hits->after[k] = scene_geometry_priority_index(g, set);
+    hits->surface[k] = scene_geometry_surface(g, (int)hits->before[k], (int)hits->after[k]);
+    return true;
+}
+
+/* Whether column k's crossing is an interface. */
+static bool is_interface(const scene_geometry *g, const ray_batch *rays, int k, ray_scratch *s, hit_batch *hits,
+                         instance_hit *mesh_hits)
+{
+    bool changes = is_change(g, rays, k, s, hits, mesh_hits);
+    while (changes && !(covered(g, rays, k, s, hits, mesh_hits) > 0.0))
+        changes = remove_open_surface(g, k, s, hits) &&
+                  g->regions[hits->before[k]].medium != g->regions[hits->after[k]].medium;
+    return changes;
 }
 
 /* Advances the rows of a primitive past t: those of column k become those of column m. */
@@ -299,12 +366,6 @@ static void skip_crossing(const scene_geometry *g, int k, int m, ray_scratch *s,
         s->segments->passed[m] = t;
         s->segments->unit[m] = s->segments->unit[k];
     }
-}
-
-/* The priority index in the whole scene. */
-static int outer_region(const scene_geometry *g, int64_t r)
-{
-    return g->outer ? g->outer->outer_region[r] : (int)r;
 }
 
 /* Records the medium segment of column k up to its crossing, or up to `end`. */
@@ -456,8 +517,8 @@ static void nearest(const scene_geometry *g, const ray_batch *rays, ray_scratch 
 {
     if (g->tree && nearest_in_view(g, rays, s, hits))
         return;
-    /* segments and mesh hits are numbered by ray of the full batch */
-    if (g->tree && !g->meshes && !s->segments)
+    /* segments, mesh hits and crossings of partial surfaces are numbered by ray of the full batch */
+    if (g->tree && !g->meshes && !s->segments && !g->partial)
         nearest_by_parts(g, rays, s, hits);
     else
         nearest_among(g, rays, s, hits);
@@ -527,7 +588,8 @@ static void quick_shadow_test(const scene_geometry *g, const ray_batch *rays, in
         const int r = g->direct_regions[j];
         const region *b = &g->regions[r];
         /* a transparent region of higher priority may hide it */
-        const bool doubtful = r < g->highest_transparent || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
+        const bool doubtful = r < g->highest_transparent || !b->opaque || b->partial,
+                   casts = region_casts_shadow(b, solid_shadows);
         if (casts && is_mesh(g, b->outside))
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
@@ -565,15 +627,6 @@ static double interface_transmittance(const scene_geometry *g, int solid_shadows
                : owner->shadow_transmittance;
 }
 
-/* The set, in the whole scene, of the primitives that contain the ray just before column k's crossing. */
-static uint64_t set_before(const scene_geometry *g, int k, const ray_scratch *s, const hit_batch *hits)
-{
-    if (g->outer)
-        return KERNEL(view_outer_set)(g->outer, hits->inside_before[k]);
-    return g->tree ? solid_tree_join(g->tree, (split_set){hits->inside_before[k], s->tree.before[k]})
-                   : hits->inside_before[k];
-}
-
 /* Records the interface that the shadow ray in column k crosses. */
 static void record_crossing(const scene_geometry *g, int k, ray_scratch *s, const hit_batch *hits,
                             const instance_hit *mesh_hits)
@@ -581,14 +634,7 @@ static void record_crossing(const scene_geometry *g, int k, ray_scratch *s, cons
     ray_crossings *x = s->crossings;
     if (x->count == CROSSINGS_MAX)
         x->full(x->context);
-    const int p = (int)hits->hit_primitive[k];
-    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
-                                              .primitive = g->outer ? g->outer->outer_primitive[p] : p,
-                                              .before = outer_region(g, hits->before[k]),
-                                              .after = outer_region(g, hits->after[k]),
-                                              .t = hits->t[k],
-                                              .inside = set_before(g, k, s, hits),
-                                              .mesh = is_mesh(g, p) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
+    x->crossings[x->count++] = crossing_of(g, k, s, hits, mesh_hits);
 }
 
 /* Moves the undecided columns to the front; returns their number. */
@@ -651,9 +697,11 @@ static void shadow_among(const scene_geometry *g, const ray_batch *given, int so
                 transmitted[s->ray[k]] = 0.0;
             if (hits->hit_primitive[k] < 0 || hits->t[k] >= 1.0)
                 continue;
-            if (!s->attention[k] || is_interface(g, rays, k, s, hits, again)) {
-                transmitted[s->ray[k]] *= interface_transmittance(g, solid_shadows, hits, again, k);
-                if (s->crossings && transmitted[s->ray[k]] > 0.0)
+            if (!s->attention[k] || is_change(g, rays, k, s, hits, again)) {
+                const bool partial = g->partial && g->regions[hits->surface[k]].partial;
+                transmitted[s->ray[k]] *= partial ? 1.0 - covered(g, rays, k, s, hits, again)
+                                                  : interface_transmittance(g, solid_shadows, hits, again, k);
+                if (s->crossings && !partial && transmitted[s->ray[k]] > 0.0)
                     record_crossing(g, k, s, hits, again);
             }
             if (transmitted[s->ray[k]] > 0.0)

@@ -88,8 +88,10 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
                   .face_shadow_transmittance = source->opaque ? NULL : source->face_shadow_transmittance,
                   .attenuates = source->attenuates && !source->opaque,
                   .reflects = source->reflects && !source->opaque,
+                  .partial = source->partial,
                   .solid = source->solid};
     g->attenuates |= b->attenuates;
+    g->partial |= b->partial;
     for (int k = 0; k < n; k++)
         add_primitive(g, priority_index, &parts[k]);
 }
@@ -112,7 +114,8 @@ static status build_instance_set(scene_geometry *g, const region_source *sources
         const int r = g->direct_regions[k];
         const region_source *source = &sources[g->origins[r].source];
         if (shape_of(source->shape)->triangles)
-            mesh_sources[count++] = (instance_source){source->shape, source->tree, g->regions[r].outside, r};
+            mesh_sources[count++] =
+                (instance_source){source->shape, source->tree, g->regions[r].outside, r, source->partial};
     }
     return count > 0 ? instance_set_build(mesh_sources, count, g->region_count, &g->meshes, why) : STATUS_OK;
 }

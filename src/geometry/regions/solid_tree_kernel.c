@@ -384,7 +384,7 @@ static void visit_shadows(void *context, int item, const uint16_t *rays, int cou
     const scene_geometry *g = w->g;
     const int r = g->tree->solids[item].region;
     const region *b = &g->regions[r];
-    const bool doubtful = !b->opaque || r < g->highest_transparent;
+    const bool doubtful = !b->opaque || b->partial || r < g->highest_transparent;
     if (!region_casts_shadow(b, w->solid_shadows))
         return;
     for (int k = 0; k < count; k++)

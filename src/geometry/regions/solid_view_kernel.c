@@ -204,6 +204,7 @@ static void fill(solid_view *v, const scene_geometry *g, const view_list *l)
                                 .direct_regions = v->direct_regions,
                                 .extent = g->extent,
                                 .attenuates = g->attenuates,
+                                .partial = g->partial,
                                 .outer = v};
     v->scene = g;
     v->regions[0] = g->regions[0];

@@ -15,7 +15,8 @@
 static bool deflects(const plan *p, int priority_index)
 {
     const region_materials *m = &p->shading_materials[priority_index];
-    bool any = !p->geometry->regions[priority_index].opaque;
+    const region *b = &p->geometry->regions[priority_index];
+    bool any = !b->opaque && !b->partial;
     for (int k = 0; k < m->count; k++)
         any |= m->mat[k].surface.reflectivity > 0.0 || m->mat[k].surface.transparency > 0.0 ||
                material_is_layered(&m->mat[k].surface, &p->render);

@@ -290,7 +290,8 @@ static void shade(tracer *t, int depth, int priority_index)
     }
 }
 
-const integrator integrator_of_photons = {.traced = true,
+const integrator integrator_of_photons = {.cover = COVER_CHANCE,
+                                          .traced = true,
                                           .needs_sample_number = true,
                                           .sampling = sampling,
                                           .begin = begin,

@@ -8,6 +8,7 @@
 #include "render/shade/media.h"
 #include "render/shade/mesh_shading.h"
 #include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -155,6 +156,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
+    cover_begin(t);
     if (!make_queues(t, t->queues.depth_limit, p->crystals != NULL) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
         !radiance_begin(t) || !layered_begin(t) || !crystals_begin(t) || !footprints_begin(t) || !begin_integrator(t) ||
         !absorption_begin(t, p->geometry->attenuates && t->frame_integrator->traced))

@@ -238,6 +238,8 @@ static void add_branch(const probe *p, int depth, bool reflected, vec3 direction
 {
     const tracer *t = p->rays;
     const group *g = &t->surface.gathered;
+    const scene_geometry *geometry = p->frame_plan->geometry;
+    const bool straight = t->surface.blended && !reflected;
     const int i = out->count++;
     ray_record *r = &out->record[i];
     *r = (ray_record){.origin = vec3_make(g->points.px[0], g->points.py[0], g->points.pz[0]),
@@ -247,7 +249,9 @@ static void add_branch(const probe *p, int depth, bool reflected, vec3 direction
                       .start = g->points.face[0],
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0],
                       .depth = depth + 1,
-                      .medium_priority_index = (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
+                      .medium_priority_index =
+                          straight ? scene_geometry_priority_index(geometry, g->inside_after[0])
+                                   : (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
     out->kind[i] = reflected ? RAY_REFLECT : RAY_REFRACT;
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->queues.depth_limit)
@@ -293,7 +297,7 @@ static void read_branches(const probe *p, int depth, branches *out)
     const bool opaque = surface_is_opaque(t, priority_index);
     int queued = 0;
     out->count = 0;
-    if (!traces_ray_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t)))
+    if (!traces_ray_trees(&p->frame_plan->render) || (opaque && !surface_reflects(t) && !t->surface.blended))
         return;
     add_ordinary(p, depth, true, &queued, out);
     add_ordinary(p, depth, false, &queued, out);

@@ -267,7 +267,8 @@ static int replicates(const render_settings *r)
     return (int)path_sampling_of(r).replicates;
 }
 
-const integrator integrator_of_path = {.traced = true,
+const integrator integrator_of_path = {.cover = COVER_CHANCE,
+                                       .traced = true,
                                        .needs_sample_number = true,
                                        .sampling = paths_of,
                                        .replicates = replicates,

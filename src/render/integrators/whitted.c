@@ -12,9 +12,13 @@
 /* Computes the branches of the gathered group; false if it has none. */
 static bool make_branches(tracer *t, bool opaque)
 {
-    if (opaque && !surface_reflects(t))
+    const bool reflects = !opaque || surface_reflects(t);
+    if (!reflects && !t->surface.blended)
         return false;
-    shading_branches(t, opaque);
+    if (reflects)
+        shading_branches(t, opaque);
+    if (t->surface.blended)
+        cover_branches(t, reflects);
     if (t->crystals && t->crystals->any)
         crystals_branches(t, opaque);
     return true;
@@ -39,9 +43,12 @@ static void follow_branches(tracer *t, int depth)
 
 static void light_of_hits(tracer *t, int depth, int priority_index)
 {
+    cover_saved saved;
+    cover_weigh(t, &saved);
     local_light(t, priority_index, light_terms_of(&t->target.frame_plan->render));
     if (scene_has_soft_shadows(&t->target.frame_plan->render))
         area_lights_soften(t, depth);
+    cover_weigh_back(t, &saved);
 }
 
 static void shade(tracer *t, int depth, int priority_index)
@@ -52,7 +59,8 @@ static void shade(tracer *t, int depth, int priority_index)
         follow_branches(t, depth);
 }
 
-const integrator integrator_of_whitted = {.traced = true,
+const integrator integrator_of_whitted = {.cover = COVER_SPLIT,
+                                          .traced = true,
                                           .sampling = camera_samples,
                                           .intersect = intersect_nearest,
                                           .background = background_sky,
@@ -93,7 +101,8 @@ static void shade_levels(tracer *t, int depth, int priority_index)
     follow_branches(t, depth);
 }
 
-const integrator integrator_of_levels = {.traced = true,
+const integrator integrator_of_levels = {.cover = COVER_SPLIT,
+                                         .traced = true,
                                          .sampling = camera_samples,
                                          .intersect = intersect_nearest,
                                          .background = background_sky,

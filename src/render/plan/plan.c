@@ -134,7 +134,10 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                                           material_scattering(&one->surface, &s->render) > 0.0 ||
                                           sheet_acts(&one->surface, &s->render),
                             .reflects = p->basic && !scene_has_constant_weights(&s->render),
+                            .partial = solid_is_partial(s, one),
                             .solid = i};
+    if (source.partial && !is_mesh) /* a skin around the surrounding medium */
+        source.opaque = false, source.attenuates = surroundings_absorb(&s->background);
     if (is_mesh)
         TRY(fetch_tree(s, (size_t)i, p, &source, why));
     if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
@@ -301,7 +304,8 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
 {
     for (int r = 0; r <= p->geometry->region_count; r++) {
         const int solid_index = p->geometry->regions[r].solid;
-        p->laws[r] = &p->solid_laws[solid_index < 0 ? (int)s->solid_count : solid_index];
+        const bool skin = p->geometry->regions[r].partial;
+        p->laws[r] = &p->solid_laws[solid_index < 0 || skin ? (int)s->solid_count : solid_index];
         p->ior[r] = index_law_at(p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
             continue;
@@ -311,7 +315,8 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
         for (int k = 0; k < p->shading_materials[r].count; k++)
             if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
                 return out_of_memory(why);
-        p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
+        p->absorption[r] = skin ? vec3_scale(s->background.absorb_per_m, s->render.unit_m)
+                                : material_extinction(p->materials[r], s->render.unit_m);
     }
     return STATUS_OK;
 }

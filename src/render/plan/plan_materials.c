@@ -98,7 +98,8 @@ static int compare_regions(const void *one, const void *other)
 bool plan_is_plain(const plan *p, int priority_index)
 {
     const region_materials *m = &p->shading_materials[priority_index];
-    return m->count == 1 && !m->mat->img && !(m->mat->surface.checker > 0.0) && !p->spectral;
+    return m->count == 1 && !m->mat->img && !shading_material_is_partial(m->mat) && !(m->mat->surface.checker > 0.0) &&
+           !p->spectral;
 }
 
 bool plan_find_shading_classes(plan *p)
@@ -126,6 +127,12 @@ bool plan_find_shading_classes(plan *p)
 
 /* --- media --- */
 
+/* Whether light crosses the region's inside as a medium of its own. */
+static bool is_clear(const region *b)
+{
+    return !b->opaque && !b->partial;
+}
+
 bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sheet **out)
 {
     region_sheet *list = NULL;
@@ -133,7 +140,7 @@ bool sheet_list_create(const scene *s, const scene_geometry *geometry, region_sh
     for (int r = 1; r <= geometry->region_count; r++) {
         const solid *one = &s->solids[geometry->regions[r].solid];
         const material *m = &one->surface;
-        if (geometry->regions[r].opaque || !sheet_acts(m, &s->render))
+        if (!is_clear(&geometry->regions[r]) || !sheet_acts(m, &s->render))
             continue;
         if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
             return false;
@@ -155,7 +162,7 @@ bool crystal_list_create(const scene *s, const scene_geometry *geometry, optical
     *out = NULL;
     for (int r = 1; r <= geometry->region_count; r++) {
         const solid *one = &s->solids[geometry->regions[r].solid];
-        if (geometry->regions[r].opaque || !material_is_crystal(&one->surface, &s->render))
+        if (!is_clear(&geometry->regions[r]) || !material_is_crystal(&one->surface, &s->render))
             continue;
         if (!list && !(list = calloc((size_t)geometry->region_count + 1, sizeof *list)))
             return false;
@@ -195,7 +202,7 @@ static int media_that_scatter(const scene *s, const scene_geometry *geometry)
 {
     int count = 0;
     for (int r = 1; r <= geometry->region_count; r++)
-        count += !geometry->regions[r].opaque &&
+        count += is_clear(&geometry->regions[r]) &&
                  material_scattering(&s->solids[geometry->regions[r].solid].surface, &s->render) > 0.0;
     return count;
 }
@@ -212,7 +219,7 @@ bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter
         return false;
     for (int r = 1; r <= geometry->region_count; r++) {
         const material *m = &s->solids[geometry->regions[r].solid].surface;
-        const double per_m = geometry->regions[r].opaque ? 0.0 : material_scattering(m, &s->render);
+        const double per_m = is_clear(&geometry->regions[r]) ? material_scattering(m, &s->render) : 0.0;
         if (per_m == 0.0)
             continue;
         scatter->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};

@@ -78,6 +78,7 @@ enum {
     DRAW_FURTHER =
         DRAW_AIRLIGHT + SCENE_LIGHTS_MAX, /* whether light meets further facets; the next number: its new direction */
     DRAW_PHOTON_END = DRAW_FURTHER + 2,   /* Russian roulette of deep photons, and their branch */
+    DRAW_COVER = DRAW_PHOTON_END + 1,     /* whether a ray meets a blended surface; plus the crossing times 2^16 */
     DRAW_NEXT
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,

@@ -181,7 +181,7 @@ static void branch(tracer *t)
             step[axis][k] = vec3_add(across, vec3_scale(w->at[k].toward, along));
         }
     curve_all(t, step, bend);
-    const bool straight = t->target.frame_plan->render.transmission == TRANSMISSION_SIMPLE;
+    const bool straight = t->target.frame_plan->render.transmission == TRANSMISSION_SIMPLE || t->surface.blended;
     for (int k = 0; k < g->count; k++) {
         const vec3 d = w->at[k].toward, n = normal_of(&g->points, k);
         const double eta = straight ? 1.0 : g->n_from[k] / g->n_to[k];

@@ -361,7 +361,8 @@ void absorption_exempt_sky(tracer *t)
     const plan *p = t->target.frame_plan;
     for (int k = 0; p->geometry->regions[0].attenuates && k < t->batch.scratch.segments->count; k++) {
         medium_segment *s = &t->batch.scratch.segments->segment[k];
-        if (s->priority_index == 0 && t->batch.hits.hit_primitive[s->ray] == -1)
+        const bool surrounding = s->priority_index == 0 || p->geometry->regions[s->priority_index].partial;
+        if (surrounding && t->batch.hits.hit_primitive[s->ray] == -1)
             s->length = 0.0;
     }
 }

@@ -13,8 +13,113 @@
 
 void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    (void)q, (void)first, (void)depth;
-    t->geometry->nearest(t->target.frame_plan->geometry, rays, &t->batch.scratch, &t->batch.hits);
+    const scene_geometry *g = t->target.frame_plan->geometry;
+    batch_cover *cover = &t->batch.cover;
+    if (g->partial) {
+        cover->sample_keys = q->sample_key + first, cover->depth = depth;
+        memset(cover->crossings, 0, (size_t)rays->count * sizeof cover->crossings[0]);
+    }
+    t->geometry->nearest(g, rays, &t->batch.scratch, &t->batch.hits);
+    cover->sample_keys = NULL;
+}
+
+/* --- partial surfaces --- */
+
+static cover_use cover_use_of(const tracer *t)
+{
+    const cover_use use = t->frame_integrator->cover;
+    return use == COVER_SPLIT && t->target.frame_plan->render.lighting != LIGHTING_WHITTED ? COVER_CUT : use;
+}
+
+/* The material of the surface that a ray crosses. */
+static const shading_material *material_crossed(const plan *p, const ray_crossing *x)
+{
+    const region_materials *m = &p->shading_materials[p->geometry->primitives[x->primitive].priority_index];
+    if (m->count == 1 || x->mesh.face == FACE_NONE)
+        return m->mat;
+    const instance_set *f = p->geometry->meshes;
+    const mesh *triangles = f->parts[f->by_primitive[x->primitive]].triangles;
+    const int slot = triangles->slots ? triangles->slots[mesh_face_triangle(x->mesh.face)] : 0;
+    return &m->mat[slot < m->count ? slot : 0];
+}
+
+static surface_mapping mapping_crossed(const tracer *t, const ray_batch *rays, const ray_crossing *x, double size)
+{
+    const scene_geometry *g = t->target.frame_plan->geometry;
+    if (x->mesh.face != FACE_NONE)
+        return instance_set_mapping(g->meshes, &x->mesh);
+    const int i = x->ray;
+    const vec3 along = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
+    const double length = vec3_length(along), dx = along.x / length, dy = along.y / length, dz = along.z / length,
+                 far = x->t * length;
+    const ray_batch one = {1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &dx, &dy, &dz, &rays->start[i], &x->inside};
+    surface_batch at;
+    t->geometry->surface(g, x->primitive, &one, &far, &at);
+    return primitive_mapping(&g->primitives[x->primitive], at.face[0], vec3_make(at.px[0], at.py[0], at.pz[0]), size);
+}
+
+static double cover_of(void *context, const ray_batch *rays, const ray_crossing *x)
+{
+    tracer *t = context;
+    const shading_material *m = material_crossed(t->target.frame_plan, x);
+    if (!shading_material_is_partial(m))
+        return 1.0;
+    const surface_mapping at = m->covered ? mapping_crossed(t, rays, x, m->surface.texture_size) : (surface_mapping){0};
+    const double part = shading_material_cover(m, at.u, at.v);
+    batch_cover *batch = &t->batch.cover;
+    if (!batch->sample_keys || part == 0.0 || part == 1.0 || cover_use_of(t) == COVER_SPLIT)
+        return part;
+    if (cover_use_of(t) == COVER_CUT)
+        return part >= 0.5 ? 1.0 : 0.0;
+    const int purpose = DRAW_COVER + (batch->crossings[x->ray]++ << 16);
+    const random_words drawn =
+        draw(t->target.frame_plan->draws.seed, batch->sample_keys[x->ray], batch->depth, purpose);
+    return random_unit(drawn.word[0]) < part ? 1.0 : 0.0;
+}
+
+void cover_begin(tracer *t)
+{
+    t->batch.scratch.cover = (surface_cover){cover_of, t};
+    t->batch.cover.sample_keys = NULL;
+}
+
+void cover_weigh(tracer *t, cover_saved *saved)
+{
+    group *g = &t->surface.gathered;
+    const size_t bytes = (size_t)g->padded * sizeof(double);
+    if (!t->surface.blended)
+        return;
+    memcpy(saved->r, g->wr, bytes), memcpy(saved->g, g->wg, bytes), memcpy(saved->b, g->wb, bytes);
+    for (int k = 0; k < g->padded; k++)
+        g->wr[k] *= t->surface.cover[k], g->wg[k] *= t->surface.cover[k], g->wb[k] *= t->surface.cover[k];
+}
+
+void cover_weigh_back(tracer *t, const cover_saved *saved)
+{
+    group *g = &t->surface.gathered;
+    const size_t bytes = (size_t)g->padded * sizeof(double);
+    if (t->surface.blended)
+        memcpy(g->wr, saved->r, bytes), memcpy(g->wg, saved->g, bytes), memcpy(g->wb, saved->b, bytes);
+}
+
+void cover_branches(tracer *t, bool reflects)
+{
+    const group *g = &t->surface.gathered;
+    branch_group *b = &t->surface.branches;
+    polar_group *p = &t->surface.polar;
+    const size_t bytes = (size_t)g->padded * sizeof(double);
+    if (!reflects)
+        memcpy(b->rx, g->dx, bytes), memcpy(b->ry, g->dy, bytes), memcpy(b->rz, g->dz, bytes);
+    memcpy(b->tx, g->dx, bytes), memcpy(b->ty, g->dy, bytes), memcpy(b->tz, g->dz, bytes);
+    for (int k = 0; k < g->padded; k++) {
+        b->reflect[k] = reflects ? t->surface.cover[k] * b->reflect[k] : 0.0;
+        b->refract[k] = 1.0 - t->surface.cover[k];
+    }
+    if (t->target.frame_plan->render.polarisation) {
+        memcpy(p->tq, p->q, bytes), memcpy(p->tu, p->u, bytes), memcpy(p->tv, p->v, bytes);
+        if (!reflects)
+            memcpy(p->rq, p->q, bytes), memcpy(p->ru, p->u, bytes), memcpy(p->rv, p->v, bytes);
+    }
 }
 
 /* --- colours --- */
@@ -27,8 +132,8 @@ static double pixel_width(const plan *p, vec3 point)
            camera_spread(&p->view, vec3_length(vec3_sub(point, p->view.eye)));
 }
 
-/* Multiplies the group's colours by the material's texture. */
-static void texture_colors(tracer *t, const primitive *surface)
+/* Multiplies the group's colours by the material's texture, and finds how much of a blended surface is there. */
+static void texture_colors(tracer *t, int priority_index, const primitive *surface)
 {
     const plan *p = t->target.frame_plan;
     group *g = &t->surface.gathered;
@@ -40,12 +145,17 @@ static void texture_colors(tracer *t, const primitive *surface)
             t->surface.on_mesh ? t->meshes->mapping[k]
                                : primitive_mapping(surface, g->points.face[k],
                                                    t->surface.texture_at ? t->surface.texture_at[k] : point, size);
+        if (t->surface.blended)
+            t->surface.cover[k] = shading_material_cover(t->surface.mat, m.u, m.v);
         /* An isotropic filter: at grazing incidence the footprint is limited to 20 pixel widths, or all would blur. */
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
         u[k] = m.u, v[k] = m.v;
         footprint[k] = pixel_width(p, point) / cosine * m.per_length;
     }
-    t->shade->tint(t->surface.mat->img, g->count, u, v, footprint, g->cr, g->cg, g->cb);
+    const bool weighted = t->surface.mat->covered && shading_material_is_partial(t->surface.mat) &&
+                          p->geometry->regions[priority_index].partial;
+    t->shade->tint(weighted ? t->surface.mat->covered : t->surface.mat->img, g->count, u, v, footprint, g->cr, g->cg,
+                   g->cb);
 }
 
 /* Replaces the group's colours, (1, 0, 0) for the material's first colour, else (0, 1, 0), by spectral values. */
@@ -65,10 +175,14 @@ static void color(tracer *t, int priority_index, const primitive *surface)
     const primitive *frame = surface->priority_index == priority_index
                                  ? surface
                                  : &p->geometry->primitives[p->geometry->regions[priority_index].outside];
+    t->surface.blended = t->surface.mat->surface.alpha == ALPHA_BLEND && shading_material_is_partial(t->surface.mat) &&
+                         p->geometry->regions[priority_index].partial && cover_use_of(t) == COVER_SPLIT;
+    for (int k = 0; t->surface.blended && k < t->surface.gathered.padded; k++)
+        t->surface.cover[k] = t->surface.mat->opacity;
     if (!p->spectral) {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
         if (t->surface.mat->img)
-            texture_colors(t, surface);
+            texture_colors(t, priority_index, surface);
         return;
     }
     /* First find which of the two colours applies, then its spectrum. */

@@ -4,6 +4,9 @@
 #include "render/shade/layered.h"
 #include "render/tracer/tracer.h"
 
+/* Begins a frame: partial surfaces (scene_geometry.h) have the alpha of their materials. */
+void cover_begin(tracer *t);
+
 /* The nearest interfaces of a batch: the default of most integrators. */
 void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
 
@@ -34,6 +37,18 @@ void shading_branches(tracer *t, bool opaque);
 /* shading_branches without the correction for meshes and without counting; the points' normals may be normals of facets
  * (rough.h). */
 void shading_branches_at_facets(tracer *t, bool opaque);
+
+/* Throughputs of the gathered group before cover_weigh. */
+typedef struct cover_saved {
+    double r[ROW], g[ROW], b[ROW];
+} cover_saved;
+/* Weight the group's local light by the part of a blended surface that is there, and restore its throughputs; no effect
+ * on other surfaces. */
+void cover_weigh(tracer *t, cover_saved *saved);
+void cover_weigh_back(tracer *t, const cover_saved *saved);
+/* Makes the branches of a blended, opaque surface: the reflected ones, if it reflects, weighted; and those that go
+ * straight on, as refracted ones. */
+void cover_branches(tracer *t, bool reflects);
 
 /* Whether the gathered group's surface is a metal or has a thin film (layered.h). */
 static inline bool surface_is_layered(const tracer *t)

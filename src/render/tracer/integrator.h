@@ -52,7 +52,15 @@ typedef struct integrator_step {
     status (*serial)(void *frame, diagnostic *why); /* then called by one thread; NULL: none */
 } integrator_step;
 
+/* What a ray does where a surface is there in part (material_alpha). */
+typedef enum cover_use {
+    COVER_CUT,    /* meets it if at least half of it is there */
+    COVER_CHANCE, /* meets it by chance */
+    COVER_SPLIT   /* meets it, and a further ray goes on, if lighting is whitted; otherwise as COVER_CUT */
+} cover_use;
+
 typedef struct integrator {
+    cover_use cover;
     bool traced;   /* hits are found by ray tests of the solids, so that all rays are counted and media absorb */
     bool by_solid; /* its values depend on the solid that a ray hits, not only on the material */
     bool needs_sample_number; /* it needs the sample number of each ray within its pixel */

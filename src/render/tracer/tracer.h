@@ -39,6 +39,14 @@ typedef struct tracer_account {
     int64_t overflow;      /* negative: a sum or a contribution left the film's range */
 } tracer_account;
 
+/* For crossings of partial surfaces: the sample keys of the batch, NULL for shadow rays; its depth; and the crossings
+ * so far, by ray. */
+typedef struct batch_cover {
+    const int64_t *sample_keys;
+    int depth;
+    int crossings[ROW];
+} batch_cover;
+
 /* A batch of rays and its hits. */
 typedef struct tracer_batch {
     ray_scratch scratch;
@@ -47,6 +55,7 @@ typedef struct tracer_batch {
     _Alignas(64) hit_batch hits;
     _Alignas(64) double transmitted[ROW]; /* fraction of each shadow ray's light */
     hit_groups groups;
+    batch_cover cover;
 } tracer_batch;
 
 /* Stokes vectors relative to their first element, of a group and of its two branches. */
@@ -63,6 +72,8 @@ typedef struct tracer_surface {
     const shading_material *mat;
     const vec3 *texture_at; /* points of the texture lookup; NULL: the hit points themselves */
     bool on_mesh;
+    bool blended; /* the rays are divided: `cover` of each meets the surface, the rest goes on */
+    double cover[ROW];
 } tracer_surface;
 
 struct tracer {

@@ -280,6 +280,9 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
     if (!owner->visible || !material_is_layered(m, r))
         return STATUS_OK;
     const char *what = material_has_film(m) ? "a film" : "a metal";
+    if (m->alpha != ALPHA_OPAQUE)
+        return diagnose(why, STATUS_BAD_INPUT, "set its alpha to opaque", "%.80s: alpha cannot remove a part of %s",
+                        owner->name, what);
     if (has_face_materials(s, owner))
         return diagnose(why, STATUS_BAD_INPUT, "give the solid a material",
                         "%.80s: a solid with materials by face cannot have %s", owner->name, what);
@@ -309,6 +312,17 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
     return STATUS_OK;
 }
 
+/* A surface with holes, or that is there in part, is a skin: nothing can be behind it that refracts. */
+static status check_alpha(const solid *owner, diagnostic *why)
+{
+    const material *m = &owner->surface;
+    if (!owner->visible || m->alpha == ALPHA_OPAQUE || m->transparency == 0.0)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "set its transparency to 0, or its alpha to opaque",
+                    "%.80s: the surface of a transparent solid cannot have alpha: %s", owner->name,
+                    m->alpha == ALPHA_MASK ? "mask" : "blend");
+}
+
 /* Photons do not scatter, so light that enters a scattering medium would be lost. */
 static status check_scattering(const scene *s, const solid *owner, diagnostic *why)
 {
@@ -328,6 +342,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_ior_check(&owner->surface, owner->name, why));
+    TRY(check_alpha(owner, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
     TRY(sheet_check(&owner->surface, owner->name, why));
     TRY(material_crystal_check(&owner->surface, owner->name, why));

@@ -53,7 +53,16 @@ static void apply_file_material(shading_material *mat, const material *base, con
     mat->surface.specular = given->specular;
     mat->surface.emission = given->emission > 0.0 ? given->emission : base->emission;
     mat->surface.shininess = given->shininess;
+    mat->surface.alpha = given->alpha;
+    mat->surface.alpha_cutoff = given->alpha_cutoff;
+    mat->opacity = given->alpha != ALPHA_OPAQUE ? given->opacity : 1.0;
     mat->img = given->img;
+}
+
+static shading_material with_alpha(shading_material mat)
+{
+    mat.covered = mat.img && mat.surface.alpha != ALPHA_OPAQUE ? texture_covered(mat.img) : NULL;
+    return mat;
 }
 
 /* With refraction, medium and transparency are properties of the solid, and a face's material affects only the
@@ -63,28 +72,56 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
     const material *named;
     const face_material *given;
     face_material_source(s, owner, slot, &named, &given);
-    shading_material mat = {.surface = *base, .img = image_of(s, named ? named : base)};
+    shading_material mat = {.surface = *base, .img = image_of(s, named ? named : base), .opacity = 1.0};
     if (named)
         mat.surface = *named;
     else if (given)
         apply_file_material(&mat, base, given);
     if (s->render.transmission == TRANSMISSION_SIMPLE) {
-        mat.surface.transparency = named                           ? named->transparency
-                                   : given && given->opacity < 1.0 ? 1.0 - given->opacity
-                                                                   : base->transparency;
-        return mat;
+        const bool clear = given && given->opacity < 1.0 && given->alpha == ALPHA_OPAQUE;
+        mat.surface.transparency = named ? named->transparency : clear ? 1.0 - given->opacity : base->transparency;
+        return with_alpha(mat);
     }
     mat.surface.transparency = base->transparency;
     if (!material_is_opaque(base)) { /* both fractions are the solid's, so that their sum is at most 1 */
         mat.surface.reflectivity = base->reflectivity;
         mat.surface.roughness = base->roughness;
     }
-    return mat;
+    return with_alpha(mat);
 }
 
 shading_material shading_material_of_solid(const scene *s, const material *base)
 {
-    return (shading_material){.surface = *base, .img = image_of(s, base)};
+    return with_alpha((shading_material){.surface = *base, .img = image_of(s, base), .opacity = 1.0});
+}
+
+bool shading_material_is_partial(const shading_material *m)
+{
+    const bool whole =
+        m->surface.alpha == ALPHA_OPAQUE || (m->surface.alpha == ALPHA_MASK && m->surface.alpha_cutoff == 0.0);
+    return !whole && (m->opacity < 1.0 || m->covered);
+}
+
+double shading_material_cover(const shading_material *m, double u, double v)
+{
+    if (!shading_material_is_partial(m))
+        return 1.0;
+    const double alpha = m->opacity * (m->covered ? texture_alpha(m->covered, u, v) : 1.0);
+    return m->surface.alpha == ALPHA_BLEND ? alpha : alpha >= m->surface.alpha_cutoff ? 1.0 : 0.0;
+}
+
+bool solid_is_partial(const scene *s, const solid *owner)
+{
+    if (integrator_traits_of(&s->render)->drawn || !solid_is_opaque(s, owner))
+        return false;
+    const int slots = face_material_slots(s, owner);
+    const shading_material own = shading_material_of_solid(s, &owner->surface);
+    bool partial = slots == 0 && shading_material_is_partial(&own);
+    for (int slot = 0; slot < slots && !partial; slot++) {
+        const shading_material mat = shading_material_of_face(s, owner, &owner->surface, slot);
+        partial = shading_material_is_partial(&mat);
+    }
+    return partial;
 }
 
 int face_material_slots(const scene *s, const solid *owner)
@@ -122,7 +159,8 @@ bool ignores_face_transparency(const scene *s, const solid *owner)
         const bool clear = !material_is_opaque(base);
         if ((named &&
              (named->transparency != base->transparency || (clear && named->reflectivity != base->reflectivity))) ||
-            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != base->transparency))
+            (!named && given && given->alpha == ALPHA_OPAQUE && given->opacity < 1.0 &&
+             1.0 - given->opacity != base->transparency))
             return true;
     }
     return false;

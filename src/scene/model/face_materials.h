@@ -12,8 +12,9 @@ bool has_face_materials(const scene *s, const solid *owner);
 /* The material of one kind of face of a solid; the texture is borrowed. */
 typedef struct shading_material {
     material surface;
-    const texture *img;
-    int number; /* 1-based index of a scene material; for a surface without one, the number of materials plus the
+    const texture *img, *covered; /* covered: of img, where its alpha counts; else NULL */
+    double opacity; /* multiplies the image's alpha; below 1 only from a mesh file with alpha other than opaque */
+    int number;     /* 1-based index of a scene material; for a surface without one, the number of materials plus the
                    1-based index of the solid */
 } shading_material;
 
@@ -31,6 +32,14 @@ int face_material_slots(const scene *s, const solid *owner);
 shading_material shading_material_of_face(const scene *s, const solid *owner, const material *base, int slot);
 /* The material of a solid without slots. */
 shading_material shading_material_of_solid(const scene *s, const material *base);
+
+/* Whether alpha removes a part of the surface, and how much of it is there at texture coordinates (u, v), 0 to 1: with
+ * alpha mask 0 or 1. */
+bool shading_material_is_partial(const shading_material *m);
+double shading_material_cover(const shading_material *m, double u, double v);
+/* Whether the material of some face of an opaque solid is partial. False where the rasteriser draws, which ignores
+ * alpha. */
+bool solid_is_partial(const scene *s, const solid *owner);
 
 /* Whether all faces of the solid are opaque. */
 bool solid_is_opaque(const scene *s, const solid *owner);

@@ -18,6 +18,16 @@ enum { SCENE_MATERIALS_MAX = 256 };
 
 /* The fields of Phong's equation I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n, and of the
  * weights rule. */
+/* What the alpha of a texture means (glTF 2.0, 3.9.4), on an opaque solid:
+ *   opaque  nothing: the colour is as the file stores it;
+ *   mask    where alpha is below alpha_cutoff, the surface is not there, for rays of every kind: it has holes;
+ *   blend   the surface is there with the fraction alpha: it shades with that weight, and a ray goes straight on with
+ *           the rest (Porter and Duff's `over`). In ray trees it is divided, and the part that goes on is a further
+ *           ray, one deeper; random paths and photons meet the surface with that probability; a shadow ray keeps the rest.
+ * Integrators whose rays do not branch (lighting other than whitted, maps) cut a blended surface at alpha 1/2. Such a
+ * solid is a skin: the surrounding medium is behind it, too, and light that passes is not deflected. */
+typedef enum material_alpha { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND } material_alpha;
+
 typedef struct material {
     vec3 color; /* C, linear RGB; for transparent solids also the transmittance of the medium over tint_distance */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
@@ -47,8 +57,10 @@ typedef struct material {
     char texture[SCENE_NAME_MAX + 1]; /* its values are multiplied by color; "" for none */
     double texture_size;              /* scene units per repetition on solids without texture coordinates; 0: one per
                                          face */
-    double checker;                   /* edge of the checker cells in the solid's own frame; 0 = none */
-    vec3 checker_color;               /* colour of the other cells */
+    int64_t alpha;                    /* material_alpha */
+    double alpha_cutoff;
+    double checker;     /* edge of the checker cells in the solid's own frame; 0 = none */
+    vec3 checker_color; /* colour of the other cells */
 } material;
 
 typedef struct named_material {

@@ -32,6 +32,7 @@ static const char *const source_words[] = {"file",  "sparse",  "dense", "sphere"
 static const char *const handedness_words[] = {"file", "right", "left", NULL};
 static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
 static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", NULL};
+static const char *const alpha_words[] = {"opaque", "mask", "blend", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const projection_words[] = {"perspective", "orthographic", NULL};
@@ -524,6 +525,13 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
          "side length of one copy of the texture, on solids other than meshes; 0: one per face (on a plane: 1 scene "
          "unit)"),
+    CHOICE(
+        PARAM_MATERIAL, material, alpha, alpha_words, "opaque",
+        "what the texture's alpha means on an opaque solid: opaque: nothing; mask: below alpha_cutoff the surface is "
+        "not there, for any ray; blend: a ray meets the fraction alpha of the surface, and goes straight on with the "
+        "rest"),
+    REAL(PARAM_MATERIAL, material, alpha_cutoff, "", 0, 1, "0.5",
+         "with alpha mask: the least alpha at which the surface is there"),
     REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
          "side length of the checker cells, in the solid's frame; 0: no checker"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of alternate checker cells"),

@@ -64,6 +64,8 @@ typedef struct face_material {
     bool given;                    /* the file defines the material; otherwise the solid's own material is used */
     vec3 color;                    /* linear RGB, each at most 1 */
     double diffuse, specular, shininess, emission, opacity;
+    material_alpha alpha; /* with alpha other than opaque, the image's alpha is multiplied by opacity */
+    double alpha_cutoff;
     const texture *img; /* one reference; NULL for none */
 } face_material;
 
