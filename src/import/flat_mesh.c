@@ -185,7 +185,8 @@ status flat_material(const request *req, flat_mesh *flat, const mesh_wire_materi
     if (flat->material_count == MESH_WIRE_SLOTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "merge equal materials", "more than %d materials are in use",
                         (int)MESH_WIRE_SLOTS_MAX);
-    const mesh_material m = {*values, name ? strdup(name) : NULL, texture ? strdup(texture) : NULL};
+    const mesh_material m = {
+        .values = *values, .name = name ? strdup(name) : NULL, .texture = texture ? strdup(texture) : NULL};
     *slot = (uint8_t)flat->material_count;
     flat->materials[flat->material_count++] = m;
     return (!name || m.name) && (!texture || m.texture) ? STATUS_OK : no_memory_for(req, why);

@@ -24,10 +24,11 @@ typedef struct request {
 /* STATUS_BAD_INPUT for a request with a limit of memory, because the file needs more; else STATUS_FAILURE. */
 status no_memory_for(const request *req, diagnostic *why);
 
-/* A material; name and texture may be NULL. Both are owned. */
+/* A material; its texts may be NULL. They are owned. */
 typedef struct mesh_material {
     mesh_wire_material values; /* without the lengths */
     char *name, *texture;
+    char *cover; /* the image of an MTL file's map_d; NULL once it is read */
 } mesh_material;
 
 /* An image file inside the mesh file; owned. */

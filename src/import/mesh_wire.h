@@ -42,6 +42,9 @@ typedef struct mesh_wire_header {
     uint32_t image_count, view_count;     /* up to MESH_WIRE_IMAGES_MAX and MESH_WIRE_VIEWS_MAX */
 } mesh_wire_header;
 
+/* What the alpha of a material's image, times its opacity, means: scene/model/material.h. */
+enum { MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
+
 /* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;

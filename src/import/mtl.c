@@ -1,5 +1,9 @@
-/* Reads the material libraries of OBJ files: newmtl, Kd, Ka, Ks, Ke, Ns, Ni, d, Tr, map_Kd. Other statements are
- * ignored: they are extensions, or nothing here depends on them. */
+/* Reads the material libraries of OBJ files: newmtl, Kd, Ka, Ks, Ke, Ns, Ni, d, Tr, map_Kd, map_d. Other statements are
+ * ignored: they are extensions, or nothing here depends on them.
+ *
+ * MTL has no mode of alpha. Programs write map_d where an image's alpha counts, nearly always with the name of map_Kd:
+ * then the material is blended. An image of map_Kd alone is opaque, whatever alpha it has: many exporters leave some in
+ * images that are not meant to be clear. */
 #include "base/array.h"
 #include "base/file.h"
 #include "import/plain.h"
@@ -61,8 +65,9 @@ static status read_number(library *l, const char *keyword, double *number)
     return STATUS_OK;
 }
 
-/* Skips the values of an option of map_Kd, of which the last may be missing if they are numbers. False: no option. */
-static bool skip_option(library *l, const char *word, size_t length)
+/* Skips the values of an option of map_Kd or map_d, of which the last may be missing if they are numbers. False: no
+ * option. */
+static bool skip_option(library *l, const char *keyword, const char *word, size_t length)
 {
     static const struct {
         const char *name;
@@ -85,19 +90,19 @@ static bool skip_option(library *l, const char *word, size_t length)
             }
         }
         if (options[i].most == 3 || lines_is(word, length, "-mm"))
-            flat_note(l->flat, "the option %.*s of map_Kd in '%.100s' is ignored", (int)length, word, l->name);
+            flat_note(l->flat, "the option %.*s of %s in '%.100s' is ignored", (int)length, word, keyword, l->name);
         return true;
     }
     return false;
 }
 
 /* Reads the name of an image, which may have blanks, after its options. */
-static status read_texture(library *l, mesh_material *m)
+static status read_texture(library *l, const char *keyword, char **image)
 {
     for (;;) {
         const char *before = l->text.at, *word;
         size_t length;
-        if (lines_word(&l->text, &word, &length) && skip_option(l, word, length))
+        if (lines_word(&l->text, &word, &length) && skip_option(l, keyword, word, length))
             continue;
         l->text.at = before;
         break;
@@ -106,9 +111,9 @@ static status read_texture(library *l, mesh_material *m)
     const size_t length = lines_rest(&l->text, &name);
     if (length == 0)
         return STATUS_OK;
-    free(m->texture);
-    m->texture = strndup(name, length);
-    return m->texture ? STATUS_OK : no_memory_for(l->req, l->why);
+    free(*image);
+    *image = strndup(name, length);
+    return *image ? STATUS_OK : no_memory_for(l->req, l->why);
 }
 
 static mesh_material default_material(void)
@@ -149,13 +154,27 @@ static status read_statement(library *l, const char *word, size_t length, mesh_m
     if (lines_is(word, length, "d"))
         return read_number(l, "d", &v->opacity);
     if (lines_is(word, length, "map_Kd"))
-        return read_texture(l, m);
+        return read_texture(l, "map_Kd", &m->texture);
+    if (lines_is(word, length, "map_d"))
+        return read_texture(l, "map_d", &m->cover);
     if (lines_is(word, length, "Tr")) {
         double clear = 1 - v->opacity;
         TRY(read_number(l, "Tr", &clear));
         v->opacity = 1 - clear;
     }
     return STATUS_OK;
+}
+
+/* Decides on alpha, when all statements of a material have been read. */
+static void find_alpha(library *l, mesh_material *m)
+{
+    if (m->cover && m->texture && strcmp(m->cover, m->texture) == 0)
+        m->values.alpha_mode = MESH_WIRE_ALPHA_BLEND;
+    else if (m->cover)
+        flat_note(l->flat, "map_d of the material '%.100s' is not read: only the alpha of the image of map_Kd is",
+                  m->name);
+    free(m->cover);
+    m->cover = NULL;
 }
 
 static status read_text(library *l)
@@ -171,6 +190,8 @@ static status read_text(library *l)
         else if (l->into->count > first)
             TRY(read_statement(l, word, length, &l->into->list[l->into->count - 1]));
     } while (lines_next(&l->text));
+    for (size_t i = first; i < l->into->count; i++)
+        find_alpha(l, &l->into->list[i]);
     return STATUS_OK;
 }
 
@@ -252,7 +273,7 @@ status mtl_read(const request *req, const char *names, size_t length, mtl_librar
 void mtl_release(mtl_library *m)
 {
     for (size_t i = 0; i < m->count; i++)
-        free(m->list[i].name), free(m->list[i].texture);
+        free(m->list[i].name), free(m->list[i].texture), free(m->list[i].cover);
     free(m->list);
     *m = (mtl_library){0};
 }

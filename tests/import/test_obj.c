@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "import/mesh_wire.h"
 #include "mesh_read.h"
 #include <math.h>
 #include <sched.h>
@@ -313,6 +314,22 @@ static void missing_normals_and_texture_coordinates_are_notes(void **state)
     }
 }
 
+static void map_d_blends_if_it_is_the_image_of_map_Kd(void **state)
+{
+    (void)state;
+    put_text("leaf.png", "an image");
+    put_text("leaf.mtl", "newmtl a\nmap_d -imfchan m leaf.png\nd 0.5\nmap_Kd leaf.png\n"
+                         "newmtl b\nmap_Kd leaf.png\nmap_d other.png\nnewmtl c\nmap_Kd leaf.png\n");
+    mesh_import *got =
+        read_text("leaf.obj", "mtllib leaf.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 2 3 4\nusemtl c\nf 1 2 4\n");
+    assert_int_equal(material_of(got, 0)->alpha_mode, MESH_WIRE_ALPHA_BLEND);
+    assert_true(material_of(got, 0)->opacity == 0.5);
+    assert_int_equal(material_of(got, 1)->alpha_mode, MESH_WIRE_ALPHA_OPAQUE);
+    assert_int_equal(material_of(got, 2)->alpha_mode, MESH_WIRE_ALPHA_OPAQUE);
+    assert_string_equal(got->note, "map_d of the material 'b' is not read: only the alpha of the image of map_Kd is");
+    mesh_import_destroy(got);
+}
+
 static void missing_libraries_and_images_are_notes(void **state)
 {
     (void)state;
@@ -503,6 +520,7 @@ int main(void)
         cmocka_unit_test(several_libraries_are_read),
         cmocka_unit_test(statements_of_a_library_are_read_or_ignored),
         cmocka_unit_test(missing_normals_and_texture_coordinates_are_notes),
+        cmocka_unit_test(map_d_blends_if_it_is_the_image_of_map_Kd),
         cmocka_unit_test(missing_libraries_and_images_are_notes),
         cmocka_unit_test(large_files_are_read_as_written),
         cmocka_unit_test(files_are_not_divided_within_a_continued_line),

@@ -200,7 +200,12 @@ static void emit(face_material *mat, const imported_material *m)
 /* Material files have a colour for each term of Phong's equation, this program a coefficient: the brightest channel. */
 static face_material face_material_of(const imported_material *m)
 {
-    face_material mat = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
+    face_material mat = {.given = m->given,
+                         .diffuse = 1.0,
+                         .shininess = m->shininess,
+                         .opacity = m->opacity,
+                         .alpha = (material_alpha)m->alpha_mode,
+                         .alpha_cutoff = m->alpha_cutoff};
     snprintf(mat.name, sizeof mat.name, "%s", m->name ? m->name : "");
     mat.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
     /* A highlight without an exponent is ignored: with exponent 0 it would cover the whole surface. */
