@@ -28,5 +28,5 @@ struct texture {
     size_t block_bytes;
     struct texture *covered; /* see texture_covered; NULL: none */
     bool multiplied;         /* a covered texture: colours are multiplied by alpha */
-    size_t owners; /* modified atomically */
+    size_t owners;           /* modified atomically */
 };

@@ -319,6 +319,26 @@ static void crystals_that_split_no_light_give_a_hint(void **state)
 }
 
 /* Each value alone, and with what makes it act. */
+static void alpha_that_is_ignored_gives_a_hint(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"skin.alpha=mask", ""},
+        {"skin.alpha=blend", ""},
+        {"skin.alpha=opaque", "crate.alpha: the image on crate has alpha, which is ignored; set its alpha to mask or "
+                              "blend\n"}};
+    for (size_t i = 0; i < 3; i++) {
+        scene *s;
+        char all[1000] = "";
+        assert_int_equal(scene_read("tests/data/acts/holes.yaml", &s, NULL), STATUS_OK);
+        assert_int_equal(scene_set_assignment(s, cases[i][0], NULL), STATUS_OK);
+        assert_int_equal(scene_load(s, NULL), STATUS_OK);
+        scene_hints(s, &(note_sink){append_line, all});
+        assert_string_equal(all, cases[i][1]);
+        scene_destroy(s);
+    }
+}
+
 static void values_that_another_parameter_overrides_give_a_hint(void **state)
 {
     (void)state;
@@ -355,6 +375,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_that_another_parameter_overrides_give_a_hint),
+        cmocka_unit_test(alpha_that_is_ignored_gives_a_hint),
         cmocka_unit_test(crystals_that_split_no_light_give_a_hint),
         cmocka_unit_test(missing_objects_and_lights_give_a_hint),
         cmocka_unit_test(extrapolated_dispersion_laws_give_a_hint),

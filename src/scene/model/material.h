@@ -16,18 +16,18 @@ enum { SCENE_NAME_MAX = 63 };
 
 enum { SCENE_MATERIALS_MAX = 256 };
 
-/* The fields of Phong's equation I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n, and of the
- * weights rule. */
 /* What the alpha of a texture means (glTF 2.0, 3.9.4), on an opaque solid:
  *   opaque  nothing: the colour is as the file stores it;
  *   mask    where alpha is below alpha_cutoff, the surface is not there, for rays of every kind: it has holes;
  *   blend   the surface is there with the fraction alpha: it shades with that weight, and a ray goes straight on with
- *           the rest (Porter and Duff's `over`). In ray trees it is divided, and the part that goes on is a further
- *           ray, one deeper; random paths and photons meet the surface with that probability; a shadow ray keeps the rest.
+ *           the rest (Porter and Duff's `over`). In ray trees it is divided, and the part that goes on is one deeper;
+ *           random paths and photons meet the surface with that probability; a shadow ray keeps the rest.
  * Integrators whose rays do not branch (lighting other than whitted, maps) cut a blended surface at alpha 1/2. Such a
  * solid is a skin: the surrounding medium is behind it, too, and light that passes is not deflected. */
 typedef enum material_alpha { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND } material_alpha;
 
+/* The fields of Phong's equation I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n, and of the
+ * weights rule. */
 typedef struct material {
     vec3 color; /* C, linear RGB; for transparent solids also the transmittance of the medium over tint_distance */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
