@@ -101,8 +101,8 @@ status image_png_text(const void *bytes, size_t size, const char *keyword, size_
 
 /* Reads PNG (any depth and kind; colours as they are stored, whatever their alpha), JPEG (grey or RGB), PFM (colour or
  * grey, either byte order, finite) or BMP (24 bits, uncompressed), recognised by the first bytes, not by the name; PNG,
- * JPEG and BMP are decoded from sRGB to linear. Truncated or damaged files and more than 2^28 pixels are errors.
- * file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
+ * JPEG and BMP are decoded from sRGB to linear. STATUS_BAD_INPUT for truncated or damaged files, and for more than 2^28
+ * pixels. file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
 /* The same for the bytes of a file, which may have come from inside another; the diagnostic has no place. */
 status image_decode(const void *bytes, size_t size, image **out, int *file_bits, diagnostic *why);
