@@ -28,8 +28,8 @@ enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
 enum { MESH_WIRE_GIVEN = 1 };                      /* flag of a material: the file defines it */
-/* What the alpha of a material's image, times its opacity, means: nothing; no surface where it is below
- * alpha_cutoff; the opacity. */
+/* What the alpha of a material's image, times its opacity, means (scene/model/material.h): nothing; no surface where it
+ * is below alpha_cutoff; the opacity. */
 enum { MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
 enum { MESH_WIRE_REPEAT, MESH_WIRE_MIRROR, MESH_WIRE_CLAMP };
 enum { MESH_WIRE_TRILINEAR, MESH_WIRE_BILINEAR, MESH_WIRE_NEAREST };
@@ -41,9 +41,6 @@ typedef struct mesh_wire_header {
     uint32_t material_count, note_length; /* 1 to MESH_WIRE_SLOTS_MAX; 0 to MESH_WIRE_TEXT_MAX */
     uint32_t image_count, view_count;     /* up to MESH_WIRE_IMAGES_MAX and MESH_WIRE_VIEWS_MAX */
 } mesh_wire_header;
-
-/* What the alpha of a material's image, times its opacity, means: scene/model/material.h. */
-enum { MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };
 
 /* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
