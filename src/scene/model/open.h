@@ -47,7 +47,7 @@ status scene_file_error(const scene *s, const char *what, long line, long column
  * because triangles were loaded since. */
 status scene_check(const scene *s, diagnostic *why);
 
-/* --- defined in file/scene_read.c and file/read.c --- */
+/* --- defined in file/shared_read.c and file/read.c --- */
 
 /* Reads a scene file (YAML; grammar at the top of file/read.c and in cuvette-scene(5)), or a shared scene
  * (file/shared.h). Images, textures and meshes are not loaded yet. */
