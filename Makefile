@@ -69,7 +69,7 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 # pkg-config runs at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
-import_libs = $(eval import_libs := $$(shell pkg-config --libs jansson) -lm)$(import_libs)
+import_libs = $(eval import_libs := $$(shell pkg-config --libs jansson zlib) -lm)$(import_libs)
 # Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
 CFLAGS ?= -g$(if $(clang),dwarf-4)
 # One set of objects for the program and both libraries: on the supported machines, position-independent code with

@@ -1,15 +1,18 @@
-/* Files and their texts: which an import may open, and how a text is divided into lines, words and numbers. */
+/* Files and their texts: which an import may open, how compressed ones are read, and how a text is divided into lines,
+ * words and numbers. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "import/plain.h"
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 enum {
     MAPPED_MIN = 1 << 20, /* bytes; smaller files are read */
@@ -22,10 +25,14 @@ file_kind file_kind_of(const char *path)
 {
     static const char *const endings[] = {
         [FILE_OBJ] = ".obj", [FILE_PLY] = ".ply", [FILE_STL] = ".stl", [FILE_GLTF] = ".gltf", [FILE_GLB] = ".glb"};
-    const char *ending = strrchr(path, '.');
-    for (int kind = 0; ending && kind < FILE_UNKNOWN; kind++)
-        if (strcasecmp(ending, endings[kind]) == 0)
+    size_t length = strlen(path);
+    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0)
+        length -= 3;
+    for (int kind = 0; kind < FILE_UNKNOWN; kind++) {
+        const size_t size = strlen(endings[kind]);
+        if (length >= size && strncasecmp(path + length - size, endings[kind], size) == 0)
             return (file_kind)kind;
+    }
     return FILE_UNKNOWN;
 }
 
@@ -115,6 +122,65 @@ static int read_all(int fd, size_t size, file_text *text)
     return 0;
 }
 
+/* --- compressed files: RFC 1952 --- */
+
+static bool is_compressed(const char *bytes, size_t size)
+{
+    return size >= 18 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0; /* the size of an empty member; deflate */
+}
+
+/* Fills *out, which grows until memory ends: the importer's is limited, and a small file can have a large text. Returns
+ * an errno, or 0. */
+static int inflate_all(z_stream *z, file_text *out, size_t room)
+{
+    for (int code = Z_OK;;) {
+        if (out->size + 2 >= room) {
+            char *more = room > SIZE_MAX / 4 ? NULL : realloc(out->bytes, 2 * room);
+            if (!more)
+                return ENOMEM;
+            out->bytes = more;
+            room *= 2;
+        }
+        const size_t left = room - out->size - 2;
+        const uInt part = left < 1 << 24 ? (uInt)left : 1 << 24;
+        z->next_out = (Bytef *)out->bytes + out->size;
+        z->avail_out = part;
+        code = inflate(z, Z_NO_FLUSH);
+        out->size += part - z->avail_out;
+        if (code == Z_STREAM_END) { /* members can follow one another */
+            if (!is_compressed((const char *)z->next_in, z->avail_in))
+                break;
+            code = inflateReset(z);
+        }
+        if (code == Z_MEM_ERROR)
+            return ENOMEM;
+        if (code != Z_OK)
+            return EBADMSG;
+    }
+    memcpy(out->bytes + out->size, "\n", 2);
+    return 0;
+}
+
+/* Replaces a compressed text. */
+static int decompress(file_text *text)
+{
+    enum { GZIP = 16 + MAX_WBITS };
+    const size_t room = 4 * text->size;
+    file_text plain = {.bytes = malloc(room)};
+    z_stream z = {.next_in = (Bytef *)text->bytes, .avail_in = (uInt)text->size};
+    int error = text->size > UINT_MAX ? EFBIG : plain.bytes && inflateInit2(&z, GZIP) == Z_OK ? 0 : ENOMEM;
+    if (!error) {
+        error = inflate_all(&z, &plain, room);
+        inflateEnd(&z);
+    }
+    files_release(text);
+    if (error)
+        free(plain.bytes);
+    else
+        *text = plain;
+    return error;
+}
+
 int files_read(int fd, file_text *text)
 {
     struct stat about;
@@ -123,7 +189,7 @@ int files_read(int fd, file_text *text)
     if (!error && !map(fd, (size_t)about.st_size, text))
         error = read_all(fd, (size_t)about.st_size, text);
     close(fd);
-    return error;
+    return !error && is_compressed(text->bytes, text->size) ? decompress(text) : error;
 }
 
 void files_release(file_text *text)

@@ -10,6 +10,9 @@ static status load(const request *req, file_text *text, diagnostic *why)
     const int error = files_read(fd, text);
     if (error == ENOMEM)
         return no_memory_for(req, why);
+    if (error == EBADMSG)
+        return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete, or compress it again",
+                        "the compressed file is damaged");
     if (error)
         return system_error(why, STATUS_BAD_INPUT, req->path, "cannot read", error, "give a readable mesh file");
     if (text->size > 0)

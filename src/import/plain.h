@@ -16,7 +16,7 @@ status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
 
 /* ---- files.c ---- */
 
-/* The format by the ending of the name; upper and lower case are the same. */
+/* The format by the ending of the name, or by the one before .gz; upper and lower case are the same. */
 file_kind file_kind_of(const char *path);
 
 /* Opens a regular file below the root (base/file.h), without waiting. -1, with errno and the reason, on failure; EXDEV:
@@ -35,7 +35,8 @@ typedef struct file_text {
     size_t size, mapped; /* mapped: bytes of the mapping; 0: it is allocated */
 } file_text;
 
-/* Reads an open file, or maps it, and closes it; files_release frees the text. An errno, or 0. */
+/* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed. files_release frees the text.
+ * An errno, or 0; EBADMSG: the compressed data is damaged. */
 int files_read(int fd, file_text *text);
 void files_release(file_text *text);
 

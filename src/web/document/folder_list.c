@@ -94,10 +94,14 @@ static void sort(const names *list)
 
 static file_use use_by_ending(const char *name)
 {
-    const char *ending = strrchr(name, '.');
-    for (size_t i = 0; ending && i < sizeof endings / sizeof *endings; i++)
-        if (strcasecmp(ending, endings[i].text) == 0)
+    const size_t length = strlen(name);
+    const size_t packed = length > 3 && strcasecmp(name + length - 3, ".gz") == 0 ? 3 : 0;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        const size_t size = strlen(endings[i].text) + packed;
+        if (length >= size && strncasecmp(name + length - size, endings[i].text, size - packed) == 0 &&
+            (!packed || (endings[i].use == USE_MODEL && strcmp(endings[i].text, ".xyz") != 0)))
             return endings[i].use;
+    }
     return USE_COUNT;
 }
 
