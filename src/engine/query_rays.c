@@ -105,7 +105,7 @@ static cuvette_hit hit_of(const cuvette_query *q, const query_buffers *b, int co
     h.after = p->geometry->regions[hits->after[column]].solid;
     h.n_after = p->ior[hits->after[column]];
     if (is_mesh_face(s->face[k])) {
-        h.triangle = mesh_face_triangle(s->face[k]);
+        h.triangle = instance_set_triangle(p->geometry->meshes, s->face[k]);
         h.copy = (int32_t)mesh_face_copy(s->face[k]);
         h.slot = (int32_t)b->on_mesh.slot[k];
         h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];

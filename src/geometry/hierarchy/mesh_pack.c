@@ -241,9 +241,9 @@ typedef struct mesh_head {
     bounds3 bounds;
     uint64_t hole_from, hole_to, hole_triangle;
     int64_t hole_sharing;
-    uint64_t hierarchies;
+    uint64_t shells, hierarchies;
 } mesh_head;
-_Static_assert(sizeof(mesh_head) == 19 * 8, "no padding");
+_Static_assert(sizeof(mesh_head) == 20 * 8, "no padding");
 
 typedef struct mesh_array {
     void *bytes;
@@ -280,7 +280,8 @@ static mesh_head head_of(const mesh *m)
                       .hole_from = m->hole.from,
                       .hole_to = m->hole.to,
                       .hole_triangle = m->hole.triangle,
-                      .hole_sharing = m->hole.sharing};
+                      .hole_sharing = m->hole.sharing,
+                      .shells = m->shell_count};
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
         head.hierarchies += stored_hierarchy(m, kind) != NULL;
     return head;
@@ -359,6 +360,7 @@ static status unpack_into(mesh *m, const mesh_head *head, pack_reader *from, dia
     m->slot_count = (int)head->slot_count;
     m->closed = head->closed;
     m->single = head->single;
+    m->shell_count = head->shells;
     m->bounds = head->bounds;
     m->hole = (mesh_hole){.from = (uint32_t)head->hole_from,
                           .to = (uint32_t)head->hole_to,

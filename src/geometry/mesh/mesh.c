@@ -13,6 +13,17 @@ static status no_room(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for a mesh");
 }
 
+void mesh_forget_layers(mesh *m)
+{
+    struct mesh_shared *shared = m->shared;
+    for (int i = 0; i < shared->layer_count; i++)
+        if (shared->layers[i] != m)
+            mesh_release(shared->layers[i]);
+    free(shared->layers);
+    shared->layers = NULL;
+    shared->layer_count = 0;
+}
+
 static void mesh_free(mesh *m)
 {
     struct mesh_shared *shared = m->shared;
@@ -20,6 +31,7 @@ static void mesh_free(mesh *m)
         for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
             if (shared->hierarchies[kind])
                 shared->destroy(shared->hierarchies[kind]);
+        mesh_forget_layers(m);
         pthread_mutex_destroy(&shared->mutex);
         free(shared);
     }
@@ -30,6 +42,7 @@ static void mesh_free(mesh *m)
     free(m->normals);
     free(m->uvs);
     free(m->slots);
+    free(m->numbers);
     free(m);
 }
 
@@ -52,7 +65,7 @@ static uint64_t bytes_of(uint64_t vertices, uint64_t triangles, bool with_normal
     while (table < 2 * vertices)
         table *= 2;
     const uint64_t weld = sizeof(uint32_t) * (table + vertices),
-                   close = 2 * sizeof(uint32_t) * vertices + 3 * 2 * sizeof(uint32_t) * triangles;
+                   close = 2 * sizeof(uint32_t) * vertices + 7 * sizeof(uint32_t) * triangles;
     return vertices * (sizeof(vec3) * (with_normals ? 2 : 1) + (with_uvs ? sizeof(mesh_uv) : 0)) +
            triangles * (sizeof(mesh_triangle) + (with_slots ? 1 : 0)) + (weld > close ? weld : close);
 }
@@ -349,6 +362,7 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
         return mesh_check(&moved, why);
     }
     memmove(m->vertices, vertices, m->vertex_count * sizeof *vertices);
+    mesh_forget_layers(m);
     if (uses_every_vertex(m)) {
         m->bounds = (bounds3){{e.low[0], e.low[1], e.low[2]}, {e.high[0], e.high[1], e.high[2]}};
         m->single = e.single;

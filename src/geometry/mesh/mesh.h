@@ -62,8 +62,10 @@ typedef struct mesh {
     bounds3 bounds;             /* of the vertices that triangles use, or of all without triangles; low > high: none */
     bool closed;                /* closed, with every front facing outwards */
     bool single;                /* every coordinate is exactly a float */
+    size_t shell_count;         /* parts of a closed mesh that share no edge; 0 for one that is not closed */
     mesh_hole hole;             /* for a mesh that is not closed */
-    struct mesh_shared *shared; /* number of owners, and the hierarchies built for it */
+    struct mesh_shared *shared; /* number of owners, and the hierarchies and layers built for it */
+    uint32_t *numbers;          /* of a layer (hierarchy_layers): its triangles' numbers in the whole mesh; else NULL */
 } mesh;
 
 /* Checks that a mesh of this size is allowed and, with the temporary arrays of mesh_finish, fits into memory
@@ -106,6 +108,36 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
 /* same[v] is the lowest vertex at v's position, where -0 equals 0. The caller frees *same, which is NULL after a
  * failure. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
+
+/* first[t] is the lowest triangle of t's shell: triangles with a common edge are in one shell. UINT32_MAX: t has two
+ * equal corners. For a closed mesh. Ownership and errors as mesh_weld. */
+status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why);
+
+/* --- closing an open mesh (repair.c) --- */
+
+/* What mesh_repair changed. */
+typedef struct mesh_repairs {
+    size_t welded; /* vertices that were moved to another one */
+    size_t degenerate,
+        duplicate;           /* triangles dropped: with two equal corners, and with the corners of an earlier one */
+    size_t swapped;          /* pairs of triangles divided by the other diagonal */
+    size_t turned;           /* triangles turned over */
+    size_t holes, triangles; /* holes filled, and with how many triangles */
+    struct mesh_fill {
+        size_t edges;
+        double span; /* the largest distance of two of its corners along an axis */
+    } * fills;       /* one for each hole, in the order of their first triangles */
+} mesh_repairs;
+
+/* A closed copy of a finished mesh: moves each vertex to the first one within the distance `weld` (0: at the same
+ * place), drops what repairs->degenerate and ->duplicate count, divides quadrilaterals by their other diagonal where
+ * more than two triangles meet in one, turns triangles so that neighbours agree, and fills
+ * holes: with the triangulation of least area of its corners (Barequet and Sharir, "Filling gaps in the boundary of a
+ * polyhedron", CAGD 12(2), 1995), or, if that would use an edge of the mesh or has more than 400 corners, around a new
+ * vertex at their mean. New triangles have the slot of a neighbour, and vertices of their own if the mesh has normals.
+ * The caller frees repairs->fills, also after a failure, and releases the mesh. STATUS_BAD_INPUT, with the place, if the
+ * result is not closed: more than two triangles share an edge, or the surface has one side. Otherwise as mesh_finish. */
+status mesh_repair(const mesh *m, double weld, mesh_repairs *repairs, mesh **out, diagnostic *why);
 
 /* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */
 double mesh_volume(const mesh *m);

@@ -20,7 +20,12 @@ struct mesh_shared {
     pthread_mutex_t mutex;                        /* held while a hierarchy is built, so that each is built only once */
     hierarchy *hierarchies[HIERARCHY_KIND_COUNT]; /* NULL until first used */
     void (*destroy)(hierarchy *h);                /* NULL while there is no hierarchy */
+    const mesh **layers; /* hierarchy_layers: written under the mutex; NULL until first used, or after a move */
+    int layer_count;
 };
+
+/* Releases the layers, while no other thread uses the mesh. */
+void mesh_forget_layers(mesh *m);
 
 /* --- steps of mesh_finish --- */
 
@@ -30,6 +35,21 @@ status mesh_check(const mesh *m, diagnostic *why);
 
 /* Sets m->closed or m->hole, and flips triangles with the wrong winding. m has passed mesh_check. */
 status mesh_close(mesh *m, diagnostic *why);
+
+/* The half-edge on the other side of each half-edge, and the positions that are one (mesh_weld). Half-edge 3 t + k runs
+ * from corner k of triangle t to the next one; UINT32_MAX: its edge is not shared by two triangles, or t has two equal
+ * corners. */
+typedef struct mesh_neighbours {
+    uint32_t *same, *mates;
+    size_t crowded; /* the lowest half-edge whose edge more than two triangles share; SIZE_MAX: none */
+} mesh_neighbours;
+status mesh_neighbours_make(const mesh *m, mesh_neighbours *out, diagnostic *why);
+void mesh_neighbours_free(mesh_neighbours *n);
+
+/* Turns triangles so that neighbours agree, as mesh_finish describes, and counts them. On a one-sided surface nothing is
+ * turned, and *against is a half-edge where neighbours cannot agree; else SIZE_MAX. The mates are then invalid. */
+status mesh_turn_alike(mesh *m, const uint32_t *same, const uint32_t *mates, size_t *turned, size_t *against,
+                       diagnostic *why);
 
 /* Sets m->bounds and m->single from the vertices that triangles use. */
 void mesh_find_bounds(mesh *m);

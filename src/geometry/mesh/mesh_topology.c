@@ -43,6 +43,7 @@ double mesh_area(const mesh *m)
 /* --- vertices at equal positions: a hash table of their numbers with open addressing --- */
 
 #define NO_MEMORY "out of memory for the vertices of a mesh"
+#define NO_EDGES "out of memory for the edges of a mesh"
 
 static uint64_t bits_of(double x)
 {
@@ -205,7 +206,7 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     uint32_t *start = lists->start = large_calloc(m->vertex_count + 2, sizeof *start);
     half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
-        return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
+        return diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_EDGES);
     if (!touch_pages(start, (m->vertex_count + 2) * sizeof *start) || !touch_pages(edges, all))
         return cancel_check(why);
     /* Two passes over the half-edges. The first counts those of v in start[v + 2]. After the summation start[v + 1] is
@@ -234,14 +235,31 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 typedef struct edge_findings {
     size_t odd;     /* lowest half-edge whose edge is not shared by two triangles; SIZE_MAX: none */
     int sharing;    /* triangles that share its edge */
+    size_t crowded; /* the lowest half-edge whose edge more than two triangles share; SIZE_MAX: none */
     size_t edges;   /* edges shared by two */
     size_t against; /* of these, edges with the same direction in both triangles */
+    size_t joined;  /* of these, edges that joined two parts */
 } edge_findings;
 
-/* Classifies each edge; mates may be NULL. */
-static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t *mates)
+/* The first triangle of a connected part, in a forest in which a triangle points to an earlier one of its part. */
+static uint32_t part_of(uint32_t *parts, uint32_t triangle)
 {
-    edge_findings found = {.odd = SIZE_MAX};
+    for (; parts[triangle] != triangle; triangle = parts[triangle])
+        parts[triangle] = parts[parts[triangle]];
+    return triangle;
+}
+
+static bool join_parts(uint32_t *parts, uint32_t one, uint32_t other)
+{
+    const uint32_t a = part_of(parts, one), b = part_of(parts, other);
+    parts[a > b ? a : b] = a > b ? b : a;
+    return a != b;
+}
+
+/* Classifies each edge; mates and parts may be NULL. */
+static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t *mates, uint32_t *parts)
+{
+    edge_findings found = {.odd = SIZE_MAX, .crowded = SIZE_MAX};
     const size_t count = lists->start[m->vertex_count];
     const half_edge *edges = lists->edges;
     size_t end = 0, lower = 0;
@@ -257,10 +275,13 @@ static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t
                 found.odd = first;
                 found.sharing = (int)(end - i);
             }
+            if (end - i > 2 && first < found.crowded)
+                found.crowded = first;
             continue;
         }
         found.edges++;
         found.against += begins(m, lists->same, first) == begins(m, lists->same, second);
+        found.joined += parts && join_parts(parts, first / 3, second / 3);
         if (mates) {
             mates[first] = second;
             mates[second] = first;
@@ -280,9 +301,8 @@ static void flip(mesh *m, size_t triangle)
     corner[2] = second;
 }
 
-/* Triangles of a mesh without a hole. Half-edge 3 t + k runs from corner k of triangle t to the next corner; mates[] is
- * the half-edge on its other side, UINT32_MAX in a triangle with two equal corners, which has no neighbours. queue and
- * turned have room for each triangle. */
+/* Half-edge 3 t + k runs from corner k of triangle t to the next corner; mates[] is the half-edge on its other side,
+ * UINT32_MAX if there is none. queue and turned have room for each triangle. */
 typedef struct neighbours {
     const uint32_t *same, *mates;
     uint32_t *queue;
@@ -300,6 +320,8 @@ static size_t flood(const mesh *m, neighbours *n, size_t first, size_t *at)
         const uint32_t t = n->queue[i];
         for (uint32_t half = 3 * t; half < 3 * t + 3; half++) {
             const uint32_t mate = n->mates[half], other = mate / 3;
+            if (mate == UINT32_MAX)
+                continue;
             const bool against = begins(m, n->same, half) == begins(m, n->same, mate);
             const uint8_t wanted = n->turned[t] ^ (uint8_t)against;
             if (n->turned[other] == UNSEEN) {
@@ -336,8 +358,7 @@ static void choose_direction(const mesh *m, neighbours *n, size_t first, size_t 
  * part is made to face outwards. */
 static bool orient(mesh *m, neighbours *n, size_t *at)
 {
-    for (size_t t = 0; t < m->triangle_count; t++)
-        n->turned[t] = n->mates[3 * t] == UINT32_MAX ? 0 : UNSEEN;
+    memset(n->turned, UNSEEN, m->triangle_count);
     size_t end = 0;
     for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {
         if (n->turned[t] != UNSEEN)
@@ -366,44 +387,124 @@ static void record_hole(mesh *m, size_t half, int sharing)
     m->hole = (mesh_hole){corner[k], corner[k == 2 ? 0 : k + 1], half / 3, sharing};
 }
 
-static status orient_all(mesh *m, const edge_lists *lists, diagnostic *why)
+/* Sets *mates to those of each half-edge. */
+static status mates_make(const mesh *m, const edge_lists *lists, uint32_t **mates, edge_findings *found,
+                         diagnostic *why)
 {
-    uint32_t *mates = malloc(3 * m->triangle_count * sizeof *mates);
-    neighbours n = {lists->same, mates, malloc(m->triangle_count * sizeof *n.queue), malloc(m->triangle_count)};
-    status result = STATUS_OK;
-    if (mates && n.queue && n.turned) {
-        for (size_t h = 0; h < 3 * m->triangle_count && !cancel_asked_at(h); h++)
-            mates[h] = UINT32_MAX;
-        find_pairs(m, lists, mates);
-        result = cancel_check(why);
-        size_t at = 0;
-        if (result == STATUS_OK && !orient(m, &n, &at))
-            record_hole(m, at, 2);
-    } else {
-        result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
+    uint32_t *list = *mates = allocate_numbers(3 * m->triangle_count + 1);
+    if (!list)
+        return diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_EDGES);
+    for (size_t h = 0; h < 3 * m->triangle_count && !cancel_asked_at(h); h++)
+        list[h] = UINT32_MAX;
+    *found = find_pairs(m, lists, list, NULL);
+    return cancel_check(why);
+}
+
+status mesh_neighbours_make(const mesh *m, mesh_neighbours *out, diagnostic *why)
+{
+    edge_lists lists = {0};
+    edge_findings found;
+    *out = (mesh_neighbours){.crowded = SIZE_MAX};
+    status result = edge_lists_make(m, &lists, why);
+    THEN(result, mates_make(m, &lists, &out->mates, &found, why));
+    if (result == STATUS_OK) {
+        out->crowded = found.crowded;
+        out->same = lists.same;
+        lists.same = NULL;
     }
-    free(mates);
+    edge_lists_free(&lists);
+    return result;
+}
+
+void mesh_neighbours_free(mesh_neighbours *n)
+{
+    free(n->same);
+    free(n->mates);
+    *n = (mesh_neighbours){0};
+}
+
+status mesh_turn_alike(mesh *m, const uint32_t *same, const uint32_t *mates, size_t *turned, size_t *against,
+                       diagnostic *why)
+{
+    neighbours n = {same, mates, malloc((m->triangle_count + 1) * sizeof *n.queue), malloc(m->triangle_count + 1)};
+    status result = STATUS_OK;
+    *turned = 0;
+    *against = SIZE_MAX;
+    if (!n.queue || !n.turned)
+        result = diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_EDGES);
+    else if (orient(m, &n, against))
+        *against = SIZE_MAX;
+    for (size_t t = 0; result == STATUS_OK && *against == SIZE_MAX && t < m->triangle_count; t++)
+        *turned += n.turned[t] == 1;
+    THEN(result, cancel_check(why));
     free(n.queue);
     free(n.turned);
+    return result;
+}
+
+static status orient_all(mesh *m, const edge_lists *lists, diagnostic *why)
+{
+    uint32_t *mates;
+    edge_findings found;
+    size_t turned, against;
+    status result = mates_make(m, lists, &mates, &found, why);
+    THEN(result, mesh_turn_alike(m, lists->same, mates, &turned, &against, why));
+    if (result == STATUS_OK && against != SIZE_MAX)
+        record_hole(m, against, 2);
+    free(mates);
+    return result;
+}
+
+/* A forest for join_parts in which each triangle is a part. */
+static status parts_make(const mesh *m, uint32_t **parts, diagnostic *why)
+{
+    uint32_t *list = *parts = allocate_numbers(m->triangle_count + 1);
+    for (size_t t = 0; list && t < m->triangle_count; t++)
+        list[t] = (uint32_t)t;
+    return list ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_EDGES);
+}
+
+status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why)
+{
+    edge_lists lists = {0};
+    *first = NULL;
+    status result = edge_lists_make(m, &lists, why);
+    THEN(result, parts_make(m, first, why));
+    if (result == STATUS_OK) {
+        find_pairs(m, &lists, NULL, *first);
+        result = cancel_check(why);
+    }
+    for (size_t t = 0; result == STATUS_OK && t < m->triangle_count; t++)
+        (*first)[t] =
+            has_distinct_corners(lists.same, m->triangles[t].corner) ? part_of(*first, (uint32_t)t) : UINT32_MAX;
+    edge_lists_free(&lists);
+    if (result != STATUS_OK) {
+        free(*first);
+        *first = NULL;
+    }
     return result;
 }
 
 status mesh_close(mesh *m, diagnostic *why)
 {
     edge_lists lists = {0};
+    uint32_t *parts = NULL;
     m->closed = false;
     m->hole = (mesh_hole){0};
     status result = edge_lists_make(m, &lists, why);
+    THEN(result, parts_make(m, &parts, why));
     if (result == STATUS_OK) {
-        const edge_findings found = find_pairs(m, &lists, NULL);
+        const edge_findings found = find_pairs(m, &lists, NULL, parts);
         result = cancel_check(why);
         m->closed = found.odd == SIZE_MAX && found.edges > 0;
+        m->shell_count = m->closed ? lists.start[m->vertex_count] / 3 - found.joined : 0;
         if (found.odd != SIZE_MAX)
             record_hole(m, found.odd, found.sharing);
         else if (result == STATUS_OK && found.against)
             result = orient_all(m, &lists, why);
     }
     edge_lists_free(&lists);
+    free(parts);
     if (result != STATUS_OK || !m->closed || !(mesh_volume(m) < 0.0))
         return result;
     for (size_t t = 0; t < m->triangle_count; t++)

@@ -76,6 +76,13 @@ static inline uint32_t mesh_face_triangle(int64_t face)
     return (uint32_t)(face & 0xffffffff);
 }
 
+/* The face's triangle in the solid's mesh, of which the part may be a layer (hierarchy_layers). */
+static inline uint32_t instance_set_triangle(const instance_set *f, int64_t face)
+{
+    const uint32_t *numbers = f->parts[f->by_primitive[mesh_face_primitive(face)]].triangles->numbers;
+    return numbers ? numbers[mesh_face_triangle(face)] : mesh_face_triangle(face);
+}
+
 /* Description of a mesh solid for instance_set_build. */
 typedef struct instance_source {
     const solid_shape *shape;

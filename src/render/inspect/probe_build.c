@@ -192,7 +192,7 @@ static bool read_hit(const probe *p, ray_node *node)
                    .tir = f.total != 0,
                    .error_bound = s->error[0]};
     h->face = is_mesh_face(s->face[0])
-                  ? (int)mesh_face_triangle(s->face[0])
+                  ? (int)instance_set_triangle(geometry->meshes, s->face[0])
                   : (int)(s->face[0] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
     if (surface_is_layered(t))
         read_layers(p, h);

@@ -55,33 +55,39 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-/* Sets *out to the hierarchy of the solid's mesh: the one that the mesh keeps, or one built for this frame, which the
- * plan stores for the first solid with this mesh and the others use. */
-static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
+/* Sets *out to the hierarchy of the mesh: the one that the mesh keeps, or one built for this frame, which the plan stores
+ * for the first solid with this mesh and the others use. */
+static status tree_of(const scene *s, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
     if (integrator_traits_of(&s->render)->drawn)
         return STATUS_OK; /* rasterisation needs none */
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
-    for (size_t k = 0; k < i; k++) {
-        const mesh_entry *other = scene_mesh_of(s, &s->solids[k]);
-        if (p->own_trees[k] && other && other->data == m) {
-            *out = p->own_trees[k];
+    for (size_t k = 0; k < p->own_tree_count; k++) {
+        if (p->own_trees[k].of == m) {
+            *out = p->own_trees[k].tree;
             return STATUS_OK;
         }
     }
-    const status code = hierarchy_build(m, kind, scene_build_threads(&s->render), &p->own_trees[i], why);
-    *out = p->own_trees[i];
-    return code;
+    if (!GROW(p->own_trees, p->own_tree_room, p->own_tree_count + 1))
+        return out_of_memory(why);
+    own_tree *own = &p->own_trees[p->own_tree_count];
+    *own = (own_tree){.of = m};
+    TRY(hierarchy_build(m, kind, scene_build_threads(&s->render), &own->tree, why));
+    p->own_tree_count++;
+    *out = own->tree;
+    return STATUS_OK;
 }
 
-static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first)
+/* first: of the solids with this mesh; once: of its layers. */
+static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first,
+                        bool once)
 {
     const double copies = shape->copies.x * shape->copies.y * shape->copies.z;
-    p->meshes.instances += (uint64_t)copies;
+    p->meshes.instances += once ? (uint64_t)copies : 0;
     p->meshes.triangles += (uint64_t)copies * shape->mesh->triangle_count;
-    if (first && m->source == MESH_SLIME) {
+    if (first && once && m->source == MESH_SLIME) {
         p->meshes.motion_steps += m->account.substeps;
         p->meshes.motion_s += m->motion_s;
     }
@@ -92,31 +98,40 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
     }
 }
 
-/* Sets source->tree to the hierarchy over the triangles of the shape of source. */
-static status fetch_tree(const scene *s, size_t i, plan *p, region_source *source, diagnostic *why)
+/* Adds the sources of the layers of a solid's mesh. shapes: room for one for each layer. */
+static status add_layers(const scene *s, size_t i, plan *p, solid_shape *shapes, region_source source,
+                         region_source *sources, int *count, diagnostic *why)
 {
     const solid *one = &s->solids[i];
     const mesh_entry *m = scene_find_mesh(s, one->mesh);
+    const mesh *const *layers;
+    int layer_count;
     if (!m || !m->data)
         return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the mesh is not loaded", one->name);
-    const status code = tree_of(s, i, p, m->data, &source->tree, why);
+    TRY(scene_mesh_layers(s, one, &layers, &layer_count, why));
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= !(s->solids[k].visible && solid_shows_mesh(&s->solids[k], one->mesh));
-    if (code == STATUS_OK)
-        report_mesh(p, m, source->shape, source->tree, first);
-    return code;
+    for (int layer = 0; layer < layer_count; layer++) {
+        shapes[layer] = one->shape;
+        shapes[layer].mesh = layers[layer];
+        source.shape = &shapes[layer];
+        TRY(tree_of(s, p, layers[layer], &source.tree, why));
+        report_mesh(p, m, &shapes[layer], source.tree, first, layer == 0);
+        sources[(*count)++] = source;
+    }
+    return STATUS_OK;
 }
 
-/* Adds the source of the regions of solid i. shape: room for its shape with mesh or points; copies: the number of
- * regions so far. */
+/* Adds the sources of the regions of solid i. shape: room for its shape with points, or for those of its mesh's layers;
+ * copies: the number of regions so far. */
 static status add_source(const scene *s, const index_law *laws, int i, plan *p, solid_shape *shape,
                          region_source *sources, int *count, size_t *copies, diagnostic *why)
 {
     const solid *one = &s->solids[i];
     const bool is_mesh = shape_of(&one->shape)->triangles, has_points = scene_points_of(s, one);
     double shadow_transmittance;
-    if (is_mesh || has_points)
+    if (has_points)
         *shape = scene_loaded_shape(s, one);
     if (has_points && !shape->points)
         return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the points are not loaded", one->name);
@@ -124,7 +139,7 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
         return out_of_memory(why);
     if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find the light that it transmits */
         shadow_transmittance = 0.0;
-    region_source source = {.shape = is_mesh || has_points ? shape : &one->shape,
+    region_source source = {.shape = has_points ? shape : &one->shape,
                             .priority = one->priority,
                             .medium = medium_of(s, laws, i),
                             .opaque = solid_is_opaque(s, one),
@@ -138,30 +153,45 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                             .solid = i};
     if (source.partial && !is_mesh) /* a skin around the surrounding medium */
         source.opaque = false, source.attenuates = surroundings_absorb(&s->background);
-    if (is_mesh)
-        TRY(fetch_tree(s, (size_t)i, p, &source, why));
     if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
         source.further_media = (int64_t)(s->solid_count + *copies);
     *copies += solid_shape_count(source.shape);
+    if (is_mesh)
+        return add_layers(s, (size_t)i, p, shape, source, sources, count, why);
     sources[(*count)++] = source;
+    return STATUS_OK;
+}
+
+/* One for each solid, and for each further layer of its mesh. */
+static status count_sources(const scene *s, size_t *places, diagnostic *why)
+{
+    *places = s->solid_count;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const mesh *const *layers;
+        int count = 0;
+        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->triangles)
+            TRY(scene_mesh_layers(s, &s->solids[i], &layers, &count, why));
+        *places += count > 1 ? (size_t)count - 1 : 0;
+    }
     return STATUS_OK;
 }
 
 static status build_geometry(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
-    region_source *sources = large_calloc(s->solid_count + 1, sizeof *sources);
-    solid_shape *shapes = large_calloc(s->solid_count + 1, sizeof *shapes);
-    p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
-    p->own_tree_count = s->solid_count;
+    size_t places;
+    TRY(count_sources(s, &places, why));
+    region_source *sources = large_calloc(places + 1, sizeof *sources);
+    solid_shape *shapes = large_calloc(places + 1, sizeof *shapes);
+    p->solid_count = s->solid_count;
     p->shadow_transmittance = calloc(s->solid_count + 1, sizeof *p->shadow_transmittance);
     status code = STATUS_OK;
-    if (!sources || !shapes || !p->own_trees || !p->shadow_transmittance)
+    if (!sources || !shapes || !p->shadow_transmittance)
         code = out_of_memory(why);
     int count = 0;
     size_t copies = 0;
     for (int i = 0; i < (int)s->solid_count && code == STATUS_OK; i++)
         if (s->solids[i].visible)
-            code = add_source(s, laws, i, p, &shapes[i], sources, &count, &copies, why);
+            code = add_source(s, laws, i, p, &shapes[count], sources, &count, &copies, why);
     enum { REGION_BYTES = sizeof(region) + sizeof(primitive) + 256 };
     THEN(code, memory_budget_check(copies * REGION_BYTES, "use fewer solids or points", why, "a scene of %zu solids",
                                    copies));
@@ -457,10 +487,10 @@ void plan_destroy(plan *p)
     free(p->shading_materials);
     free(p->shading_class);
     scene_geometry_destroy(p->geometry);
-    for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
-        hierarchy_destroy(p->own_trees[i]);
+    for (size_t i = 0; i < p->own_tree_count; i++)
+        hierarchy_destroy(p->own_trees[i].tree);
     free(p->own_trees);
-    for (size_t i = 0; p->shadow_transmittance && i < p->own_tree_count; i++)
+    for (size_t i = 0; p->shadow_transmittance && i < p->solid_count; i++)
         free(p->shadow_transmittance[i]);
     free(p->shadow_transmittance);
     free(p->materials);

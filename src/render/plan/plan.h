@@ -58,14 +58,20 @@ typedef struct region_materials {
     shading_rule shading;
 } region_materials;
 
+typedef struct own_tree {
+    const mesh *of; /* borrowed */
+    hierarchy *tree;
+} own_tree;
+
 typedef struct plan {
     scene_geometry *geometry;
     const material **materials;          /* by priority index; [0] is NULL */
     region_materials *shading_materials; /* by priority index; [0] is empty */
-    int *shading_class;    /* by priority index: the first region of its class; a class may be shaded as one group */
-    hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */
-    size_t own_tree_count;
-    double **shadow_transmittance; /* by solid: of its faces by slot, or NULL; own_tree_count entries */
+    int *shading_class;  /* by priority index: the first region of its class; a class may be shaded as one group */
+    own_tree *own_trees; /* hierarchies that the plan owns because the meshes do not keep them */
+    size_t own_tree_count, own_tree_room;
+    double **shadow_transmittance; /* by solid: of its faces by slot, or NULL */
+    size_t solid_count;
     mesh_report meshes;
     material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
     double *ior;       /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */

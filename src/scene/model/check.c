@@ -250,7 +250,10 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     if (m->source == MESH_FILE && m->data && m->data->triangle_count == 0)
         return diagnose(why, STATUS_BAD_INPUT, "use it as the points of another solid", "%.80s: %.80s has no triangles",
                         owner->name, m->name);
-    return check_closed(s, owner, m, why);
+    TRY(check_closed(s, owner, m, why));
+    const mesh *const *layers;
+    int count;
+    return scene_mesh_layers(s, owner, &layers, &count, why);
 }
 
 /* reflectivity + transparency must not exceed 1 for any kind of face, either. */

@@ -24,7 +24,7 @@ typedef struct package_head {
 } package_head;
 _Static_assert(sizeof(package_head) == 56, "no padding");
 
-enum { PACKAGE_VERSION = 1 };
+enum { PACKAGE_VERSION = 2 };
 
 static package_head head_of(uint64_t size)
 {
@@ -185,7 +185,11 @@ status scene_build_hierarchies(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->solid_count; i++) {
         const mesh_entry *m = s->solids[i].visible ? scene_mesh_of(s, &s->solids[i]) : NULL;
         const hierarchy *built;
+        const mesh *const *layers;
+        int count;
         if (m && m->data)
+            TRY(scene_mesh_layers(s, &s->solids[i], &layers, &count, why));
+        if (m && m->data && layers[0] == m->data) /* other layers are made from the mesh where it is used */
             TRY(hierarchy_of_mesh(m->data, (hierarchy_kind)s->render.accel, scene_build_threads(&s->render), &built,
                                   why));
     }

@@ -1,0 +1,303 @@
+/* A mesh whose shells overlap is the union of them: its film is that of separate solids of one medium. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "geometry/hierarchy/hierarchy.h"
+#include "geometry/mesh/mesh_generators.h"
+#include "mesh_fixture.h"
+#include "random_stream.h"
+#include "render_fixture.h"
+#include "scene/model/open.h"
+
+enum { BOXES_MAX = 5 };
+
+typedef struct box {
+    vec3 center, size, turn_deg;
+} box;
+
+static box random_box(uint64_t *seed)
+{
+    box b = {.center = random_point(seed, 0.7), .turn_deg = random_point(seed, 180.0)};
+    b.size = vec3_make(random_real(seed, 0.3, 1.6), random_real(seed, 0.3, 1.6), random_real(seed, 0.3, 1.6));
+    return b;
+}
+
+/* One shell for each box; inside out if the bit of its number is set. */
+static mesh *mesh_of_boxes(const box *boxes, size_t count, unsigned inside_out)
+{
+    mesh *m = cubes(count);
+    for (size_t c = 0; c < count; c++) {
+        const mat3 turn = rotation_from_deg(boxes[c].turn_deg);
+        put_cube(m, c, vec3_make(0.0, 0.0, 0.0), 1.0);
+        for (size_t v = 8 * c; v < 8 * c + 8; v++) {
+            const vec3 p = m->vertices[v], s = vec3_scale(boxes[c].size, 0.5);
+            m->vertices[v] = vec3_add(boxes[c].center, mat3_apply(turn, vec3_make(p.x * s.x, p.y * s.y, p.z * s.z)));
+        }
+        for (size_t t = 12 * c; t < 12 * c + 12; t++)
+            if (inside_out >> c & 1)
+                turn_triangle(m, t);
+    }
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_int_equal(m->shell_count, count);
+    return m;
+}
+
+#define HEAD                                                                                                     \
+    "render: {width: 48, height: 36, depth: 9}\nbackground: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: "  \
+    "[0.9, 0.8, 0.3]}\ncamera: {position: [0.3, 0.5, -4], target: [0, 0, 0]}\nlights: {lamp: {position: [4, 7, " \
+    "-5]}}\n"
+#define GLASS "transparency: 1, ior: 1.5"
+
+static scene *scene_of_mesh(const mesh *m)
+{
+    scene *s = scene_from(HEAD "meshes: {body: {generate: box}}\nsolids: {s: {shape: mesh, mesh: body, " GLASS
+                               ", shading: flat}}\n");
+    mesh_retain(m);
+    s->meshes[0].data = m;
+    return s;
+}
+
+/* An analytic solid for each box; `air`: the number of one that is air, before the others, or -1. */
+static scene *scene_of_boxes(const box *boxes, size_t count, int air)
+{
+    char text[4096];
+    int at = snprintf(text, sizeof text, HEAD "solids:\n");
+    for (size_t i = 0; i < count; i++) {
+        const box *b = &boxes[i];
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "  b%zu: {shape: box, position: [%.17g, %.17g, %.17g], size: [%.17g, %.17g, %.17g], "
+                       "rotation: [%.17g, %.17g, %.17g], %s}\n",
+                       i, b->center.x, b->center.y, b->center.z, b->size.x, b->size.y, b->size.z, b->turn_deg.x,
+                       b->turn_deg.y, b->turn_deg.z, (int)i == air ? "transparency: 1, ior: 1, priority: 2" : GLASS);
+    }
+    return scene_from(text);
+}
+
+/* Pixels that differ by more than 1e-9. */
+static int different(scene *one, scene *other)
+{
+    worked(scene_load(one, NULL), NULL);
+    worked(scene_load(other, NULL), NULL);
+    render_result *a = render(one), *b = render(other);
+    int count = 0;
+    for (int i = 0; i < a->img->width * a->img->height; i++) {
+        bool same = true;
+        for (int c = 0; c < 3; c++)
+            same &= fabs(film_value(a->img, i % a->img->width, i / a->img->width, c) -
+                         film_value(b->img, i % a->img->width, i / a->img->width, c)) <= 1e-9;
+        count += !same;
+    }
+    render_result_destroy(a);
+    render_result_destroy(b);
+    scene_destroy(one);
+    scene_destroy(other);
+    return count;
+}
+
+static int layers_of(const mesh *m, const mesh *const **layers)
+{
+    int count;
+    diagnostic why = {0};
+    const mesh *const *list;
+    worked(hierarchy_layers(m, 1, &list, &count, &why), &why);
+    if (layers)
+        *layers = list;
+    return count;
+}
+
+static void overlapping_boxes_are_their_union(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    int most = 0;
+    for (int round = 0; round < 12; round++) {
+        box boxes[BOXES_MAX];
+        const size_t count = 2 + (size_t)random_below(&seed, BOXES_MAX - 1);
+        for (size_t i = 0; i < count; i++)
+            boxes[i] = random_box(&seed);
+        mesh *m = mesh_of_boxes(boxes, count, 0);
+        const int layers = layers_of(m, NULL);
+        most = layers > most ? layers : most;
+        assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(boxes, count, -1)), 0);
+        mesh_release(m);
+    }
+    assert_true(most > 2);
+}
+
+/* From within the glass, too, and from both sides: the camera of the one scene is in a box. */
+static void a_camera_inside_sees_the_union(void **state)
+{
+    (void)state;
+    uint64_t seed = 2;
+    for (int round = 0; round < 6; round++) {
+        box boxes[3];
+        for (size_t i = 0; i < 3; i++)
+            boxes[i] = random_box(&seed);
+        mesh *m = mesh_of_boxes(boxes, 3, 0);
+        scene *one = scene_of_mesh(m), *other = scene_of_boxes(boxes, 3, -1);
+        char place[256];
+        snprintf(place, sizeof place, "camera.position=%.17g,%.17g,%.17g camera.target=%.17g,%.17g,%.17g",
+                 boxes[1].center.x, boxes[1].center.y, boxes[1].center.z, boxes[0].center.x, boxes[0].center.y,
+                 boxes[0].center.z + 0.1);
+        set_all(one, place);
+        set_all(other, place);
+        assert_int_equal(different(one, other), 0);
+        mesh_release(m);
+    }
+}
+
+static const box unit = {{0, 0, 0}, {2, 2, 2}, {0, 30, 10}}, small = {{0.1, -0.1, 0.2}, {0.8, 0.7, 0.6}, {20, 0, 5}},
+                 apart = {{3, 0.5, 0}, {1, 1, 1}, {0, 10, 0}};
+
+static void a_shell_in_a_shell_is_hidden(void **state)
+{
+    (void)state;
+    const box both[2] = {unit, small};
+    mesh *m = mesh_of_boxes(both, 2, 0);
+    assert_int_equal(layers_of(m, NULL), 2);
+    assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 1, -1)), 0);
+    mesh_release(m);
+}
+
+static void a_hollow_stays_one(void **state)
+{
+    (void)state;
+    const box both[2] = {unit, small};
+    mesh *m = mesh_of_boxes(both, 2, 2);
+    const mesh *const *layers;
+    assert_int_equal(layers_of(m, &layers), 1);
+    assert_ptr_equal(layers[0], m);
+    assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 2, 1)), 0);
+    mesh_release(m);
+}
+
+/* Solid in a hollow in a solid, and a hollow that a further shell covers in part. */
+static void hollows_count_by_winding(void **state)
+{
+    (void)state;
+    const box nest[3] = {unit, small, {{0.1, -0.1, 0.2}, {0.3, 0.3, 0.2}, {1, 2, 3}}};
+    mesh *m = mesh_of_boxes(nest, 3, 2);
+    assert_int_equal(layers_of(m, NULL), 1);
+    mesh_release(m);
+    const box part[3] = {unit, small, {{0.4, 0.1, 0.2}, {0.5, 0.6, 0.3}, {7, 2, 3}}};
+    m = mesh_of_boxes(part, 3, 2);
+    assert_int_equal(layers_of(m, NULL), 2);
+    scene *other = scene_of_boxes(part, 3, 1);
+    set(other, "b2.priority=3");
+    assert_int_equal(different(scene_of_mesh(m), other), 0);
+    mesh_release(m);
+}
+
+static void shells_apart_are_one_layer(void **state)
+{
+    (void)state;
+    const box both[2] = {unit, apart};
+    mesh *m = mesh_of_boxes(both, 2, 0);
+    const mesh *const *layers;
+    assert_int_equal(layers_of(m, &layers), 1);
+    assert_ptr_equal(layers[0], m);
+    mesh_release(m);
+}
+
+/* Boxes of shells that overlap though the shells do not. */
+static void shells_that_miss_each_other_are_one_layer(void **state)
+{
+    (void)state;
+    const box both[2] = {{{0, 0, 0}, {4, 0.2, 0.2}, {0, 0, 45}}, {{0.5, -0.5, 0}, {4, 0.2, 0.2}, {0, 0, 45}}};
+    mesh *m = mesh_of_boxes(both, 2, 0);
+    assert_int_equal(layers_of(m, NULL), 1);
+    mesh_release(m);
+}
+
+static void a_shell_that_is_inside_out_is_turned(void **state)
+{
+    (void)state;
+    const box both[2] = {unit, apart};
+    mesh *m = mesh_of_boxes(both, 2, 2);
+    const mesh *const *layers;
+    assert_int_equal(layers_of(m, &layers), 1);
+    assert_ptr_not_equal(layers[0], m);
+    assert_int_equal(layers[0]->triangle_count, 24);
+    assert_int_equal(layers[0]->numbers[13], 13);
+    assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 2, -1)), 0);
+    mesh_release(m);
+}
+
+static void a_hollow_that_crosses_a_shell_is_refused(void **state)
+{
+    (void)state;
+    const box both[2] = {{{0, 0, 0}, {2, 2, 2}, {0, 0, 0}}, {{1, 0, 0}, {1, 1, 1}, {0, 0, 0}}};
+    mesh *m = mesh_of_boxes(both, 2, 2);
+    const mesh *const *layers;
+    int count;
+    diagnostic why = {0};
+    assert_int_equal(hierarchy_layers(m, 1, &layers, &count, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "those of triangles 12 and 0 at (1, "));
+    scene *s = scene_of_mesh(m);
+    worked(scene_load(s, &why), &why);
+    assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "s: shells of the mesh overlap"));
+    set(s, "s.transparency=0"); /* rays do not see the inside */
+    worked(scene_check(s, &why), &why);
+    scene_destroy(s);
+    mesh_release(m);
+}
+
+/* A mesh that moves has other layers. */
+static void moved_shells_are_divided_again(void **state)
+{
+    (void)state;
+    box both[2] = {unit, apart};
+    mesh *m = mesh_of_boxes(both, 2, 0);
+    assert_int_equal(layers_of(m, NULL), 1);
+    both[1].center.x = 1.0;
+    mesh *over = mesh_of_boxes(both, 2, 0);
+    assert_int_equal(mesh_move(m, over->vertices, NULL, NULL), STATUS_OK);
+    assert_int_equal(layers_of(m, NULL), 2);
+    mesh_release(m);
+    mesh_release(over);
+}
+
+/* Spheres of many triangles: one mesh of two against two meshes. */
+static void overlapping_spheres_are_their_union(void **state)
+{
+    (void)state;
+    mesh *ball = NULL, *m = NULL;
+    assert_int_equal(generate_icosphere(3, &ball, NULL), STATUS_OK);
+    const size_t n = ball->vertex_count, count = ball->triangle_count;
+    assert_int_equal(mesh_create(2 * n, 2 * count, false, false, false, &m, NULL), STATUS_OK);
+    for (size_t i = 0; i < 2 * n; i++)
+        m->vertices[i] = vec3_add(ball->vertices[i % n], vec3_make(i < n ? -0.5 : 0.5, 0.0, 0.0));
+    for (size_t t = 0; t < 2 * count; t++)
+        for (int k = 0; k < 3; k++)
+            m->triangles[t].corner[k] = ball->triangles[t % count].corner[k] + (t < count ? 0 : (uint32_t)n);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    scene *two = scene_from(HEAD "meshes: {ball: {generate: icosphere, level: 3}}\nsolids:\n"
+                                 "  a: {shape: mesh, mesh: ball, position: [-0.5, 0, 0], shading: flat, " GLASS "}\n"
+                                 "  b: {shape: mesh, mesh: ball, position: [0.5, 0, 0], shading: flat, " GLASS "}\n");
+    assert_int_equal(different(scene_of_mesh(m), two), 0);
+    mesh_release(m);
+    mesh_release(ball);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(overlapping_boxes_are_their_union),
+        cmocka_unit_test(a_camera_inside_sees_the_union),
+        cmocka_unit_test(a_shell_in_a_shell_is_hidden),
+        cmocka_unit_test(a_hollow_stays_one),
+        cmocka_unit_test(hollows_count_by_winding),
+        cmocka_unit_test(shells_apart_are_one_layer),
+        cmocka_unit_test(shells_that_miss_each_other_are_one_layer),
+        cmocka_unit_test(a_shell_that_is_inside_out_is_turned),
+        cmocka_unit_test(a_hollow_that_crosses_a_shell_is_refused),
+        cmocka_unit_test(moved_shells_are_divided_again),
+        cmocka_unit_test(overlapping_spheres_are_their_union),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
