@@ -1,6 +1,7 @@
 /* `cuvette mesh`: describes a mesh of a file or of a generator, or writes its triangles for other programs. The options
  * of the generators are parameters of a scene's mesh, set through the parameter table. */
 #include "base/cancel.h"
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -8,17 +9,24 @@
 #include "cli/terminal.h"
 #include "report/json.h"
 #include "report/mesh_writers.h"
+#include "scene/assets/mesh_file.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct mesh_request {
-    scene *scene; /* a scene with only this mesh */
+    scene *scene; /* with only a generated mesh */
     const char *file;
-    bool generate;
+    mesh_import *imported; /* the file's */
+    const mesh *made;      /* the mesh of either; borrowed */
+    mesh *repaired;        /* by --close; else NULL */
+    bool generate, close;
+    double weld;        /* negative: not given */
     int format;         /* mesh_format; MESH_FORMAT_COUNT: describe it */
     const char *output; /* NULL: standard output */
     bool json;
@@ -44,6 +52,15 @@ static status parse_parameter(const command_option *o, void *context, const char
     return locate_failure(why, name, scene_set(request->scene, path, value, why));
 }
 
+static status parse_weld(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    mesh_request *request = context;
+    TRY(options_reals("--weld", value, o->form, 1, &request->weld, why));
+    return request->weld >= 0.0
+               ? STATUS_OK
+               : options_wrong("--weld", value, why, "use a length of at least 0", "the distance is negative");
+}
+
 static const command_option options[] = {
     {"generate", 0, "KIND", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
      .store = parse_parameter},
@@ -63,7 +80,10 @@ static const command_option options[] = {
      .store = parse_parameter},
     {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .store = parse_parameter},
     {"seed", 0, "N", "terrain: seed of the random hills; default 1", .store = parse_parameter},
-    {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply (default: by the ending of -o FILE)",
+    {"close", 0, NULL, "close an open mesh: drop double triangles, turn them to agree, fill holes",
+     OPTION_FILLS(option_flag, mesh_request, close)},
+    {"weld", 0, "LENGTH", "with --close, first join vertices within this distance; default 0", .store = parse_weld},
+    {"format", 'f', "FORMAT", "write the triangles as obj, ply or glb (default: by the ending of -o FILE)",
      .store = parse_format},
     {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
@@ -83,6 +103,7 @@ static const command_form form = {
              "  cuvette mesh teapot.obj\n"
              "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
              "  cuvette mesh --generate sparse --count 50000 -f obj -o sparse.obj\n"
+             "  cuvette mesh bunny.obj --close --weld=0.0001 -o closed.ply\n"
              "Sparse, dense and sphere are the triangle sets of the speed study; they are bit-identical on every "
              "machine.",
 };
@@ -96,6 +117,8 @@ static status check_request(const mesh_request *request, diagnostic *why)
         what = "a file and --generate exclude each other";
     else if (request->json && request->format != MESH_FORMAT_COUNT)
         what = "--json and --format exclude each other";
+    else if (request->weld >= 0.0 && !request->close)
+        what = "--weld has no effect without --close", remedy = "add --close";
     return what ? options_wrong("mesh", NULL, why, remedy, "%s", what) : STATUS_OK;
 }
 
@@ -112,29 +135,105 @@ static status choose_format(mesh_request *request, diagnostic *why)
         }
     if (strcmp(dot, ".txt") == 0)
         return STATUS_OK;
-    return options_wrong("-o", NULL, why, "use .obj, .bin or .ply, or .txt for the description, or give --format",
+    return options_wrong("-o", NULL, why, "use .obj, .ply or .glb, or .txt for the description, or give --format",
                          "unknown file name ending of '%.80s'", request->output);
 }
 
-/* Loads or generates the mesh, which the scene owns. */
-static status load_mesh(const mesh_request *request, diagnostic *why)
+/* A file is described and written in its own axes. */
+static status read_file(mesh_request *request, diagnostic *why)
 {
-    status result = request->file ? scene_set(request->scene, "body.file", request->file, why) : STATUS_OK;
-    if (request->file) /* a file is described and written in its own axes */
-        THEN(result, scene_set(request->scene, "body.handedness", "left", why));
-    THEN(result, scene_check(request->scene, why));
-    THEN(result, scene_input_load(request->scene, why));
-    if (result == STATUS_BAD_INPUT && request->generate)
+    const mesh_limits limits = {.right_handed = false};
+    const status code = mesh_is_points(request->file)
+                            ? mesh_points_read(request->file, NULL, false, &request->imported, why)
+                            : mesh_read_file(request->file, &limits, &request->imported, why);
+    if (code == STATUS_OK)
+        request->made = request->imported->mesh;
+    return code;
+}
+
+static status generate(mesh_request *request, diagnostic *why)
+{
+    TRY(scene_check(request->scene, why));
+    const status code = scene_input_load(request->scene, why);
+    if (code == STATUS_BAD_INPUT)
         diagnostic_locate(why, "--generate", 0, 0);
-    return result;
+    request->made = request->scene->meshes[0].data;
+    return code;
+}
+
+static void note_holes(FILE *to, const mesh_repairs *r)
+{
+    enum { SHOWN = 5 };
+    size_t largest[SHOWN], shown = 0;
+    for (size_t i = 0; i < r->holes; i++) {
+        size_t at = shown < SHOWN ? shown++ : SHOWN - 1;
+        if (at == SHOWN - 1 && shown == SHOWN && i >= SHOWN && r->fills[i].edges <= r->fills[largest[at]].edges)
+            continue;
+        for (; at > 0 && r->fills[largest[at - 1]].edges < r->fills[i].edges; at--)
+            largest[at] = largest[at - 1];
+        largest[at] = i;
+    }
+    for (size_t i = 0; i < shown; i++)
+        fprintf(to, "%s%zu edges, %.3g wide", i ? "; " : ": ", r->fills[largest[i]].edges, r->fills[largest[i]].span);
+    if (r->holes > shown)
+        fprintf(to, "; and %zu smaller ones", r->holes - shown);
+}
+
+static status note_repairs(const mesh_repairs *r, diagnostic *why)
+{
+    text_writer to;
+    char *text = NULL;
+    size_t size;
+    TRY(text_writer_open(&to, why));
+    fprintf(
+        to.stream,
+        "welded %zu vertices; dropped %zu degenerate and %zu double triangles; swapped %zu diagonals; turned %zu over; "
+        "filled %zu hole%s with %zu triangles",
+        r->welded, r->degenerate, r->duplicate, r->swapped, r->turned, r->holes, r->holes == 1 ? "" : "s",
+        r->triangles);
+    note_holes(to.stream, r);
+    TRY(text_writer_end(&to, STATUS_OK, &text, &size, why));
+    terminal_note(text);
+    free(text);
+    return STATUS_OK;
+}
+
+static status close_mesh(mesh_request *request, diagnostic *why)
+{
+    mesh_repairs repairs;
+    status code = mesh_repair(request->made, fmax(request->weld, 0.0), &repairs, &request->repaired, why);
+    if (code != STATUS_OK && request->file)
+        diagnostic_locate(why, request->file, 0, 0);
+    THEN(code, note_repairs(&repairs, why));
+    free(repairs.fills);
+    if (code == STATUS_OK)
+        request->made = request->repaired;
+    return code;
+}
+
+static status load_mesh(mesh_request *request, diagnostic *why)
+{
+    TRY(request->file ? read_file(request, why) : generate(request, why));
+    if (request->imported && request->imported->note)
+        terminal_note(request->imported->note);
+    if (request->close)
+        TRY(close_mesh(request, why));
+    const double rounding = request->format == MESH_GLB ? mesh_rounding(request->made) : 0.0;
+    if (rounding > 0.0) {
+        char note[120];
+        snprintf(note, sizeof note, "GLB files have single precision: positions change by up to %.2g", rounding);
+        terminal_note(note);
+    }
+    return STATUS_OK;
 }
 
 static status write_to(const void *content, FILE *stream, diagnostic *why)
 {
     const mesh_request *request = content;
-    const mesh *m = request->scene->meshes[0].data;
+    const mesh *m = request->made;
     if (request->format != MESH_FORMAT_COUNT)
-        mesh_write(m, (mesh_format)request->format, request->generate, stream);
+        TRY(mesh_write(m, request->imported ? request->imported->materials : NULL, (mesh_format)request->format,
+                       request->generate, stream, why));
     else if (request->json)
         return json_put(stream, mesh_rows_json(m), why);
     else
@@ -144,15 +243,15 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
 
 status command_mesh(int argc, char **argv, diagnostic *why)
 {
-    mesh_request request = {.scene = scene_create(), .format = MESH_FORMAT_COUNT};
+    mesh_request request = {.scene = scene_create(), .format = MESH_FORMAT_COUNT, .weld = -1.0};
     status result = request.scene ? scene_add(request.scene, PARAM_MESH, "body", NULL, why) : out_of_memory(why);
     THEN(result, command_form_read(&form, argc, argv, &request, why));
     THEN(result, check_request(&request, why));
     THEN(result, choose_format(&request, why));
     THEN(result, load_mesh(&request, why));
-    if (result == STATUS_OK && *face_materials_note(request.scene->meshes[0].shading_materials))
-        terminal_note(face_materials_note(request.scene->meshes[0].shading_materials));
     THEN(result, outputs_write_text(request.output, write_to, &request, why));
+    mesh_release(request.repaired);
+    mesh_import_destroy(request.imported);
     scene_destroy(request.scene);
     return result;
 }

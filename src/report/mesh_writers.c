@@ -1,9 +1,13 @@
-/* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, raw numbers
- * or binary PLY. */
+/* Describes a mesh (counts, bounds, area, volume or first hole, memory), and writes it as Wavefront OBJ, binary PLY
+ * or GLB. */
 #include "report/mesh_writers.h"
 #include "base/cancel.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "report/json.h"
+
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* --- description --- */
@@ -87,7 +91,7 @@ json_t *mesh_rows_json(const mesh *m)
 
 const char *mesh_format_name(mesh_format format)
 {
-    static const char *const names[MESH_FORMAT_COUNT] = {"obj", "bin", "ply"};
+    static const char *const names[MESH_FORMAT_COUNT] = {"obj", "ply", "glb"};
     return names[format];
 }
 
@@ -140,13 +144,6 @@ static void put_vector(vec3 v, bool single, FILE *stream)
     put_real(v.z, single, stream);
 }
 
-static void write_bin(const mesh *m, FILE *stream)
-{
-    for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++)
-        for (int k = 0; k < 3; k++)
-            put_vector(m->vertices[m->triangles[t].corner[k]], m->single, stream);
-}
-
 static void write_ply(const mesh *m, bool mirrored, FILE *stream)
 {
     const char *real = m->single ? "float" : "double";
@@ -176,12 +173,201 @@ static void write_ply(const mesh *m, bool mirrored, FILE *stream)
     }
 }
 
-void mesh_write(const mesh *m, mesh_format format, bool mirrored, FILE *stream)
+/* --- GLB: a header, a chunk of JSON that says where everything is, and a chunk of numbers --- */
+
+enum { GLB_HEADER = 12, GLB_CHUNK = 8, GL_FLOAT = 5126, GL_UINT = 5125, GL_VERTICES = 34962, GL_INDICES = 34963 };
+
+/* The arrays of the second chunk, in order: positions, normals, texture coordinates, and the triangles by slot. */
+typedef struct glb_layout {
+    size_t by_slot[MESH_SLOTS_MAX]; /* triangles */
+    uint64_t bytes;                 /* so far */
+    json_t *views, *accessors, *attributes;
+    bool bad;
+} glb_layout;
+
+/* Adds an array and its accessor. Returns the accessor's number. */
+static json_int_t add_array(glb_layout *l, int target, int component, const char *type, size_t count, size_t size)
+{
+    l->bad |=
+        json_array_append_new(l->views, json_pack("{s:i,s:I,s:I,s:i}", "buffer", 0, "byteOffset", (json_int_t)l->bytes,
+                                                  "byteLength", (json_int_t)(count * size), "target", target)) != 0;
+    l->bad |= json_array_append_new(l->accessors, json_pack("{s:I,s:i,s:I,s:s}", "bufferView",
+                                                            (json_int_t)json_array_size(l->views) - 1, "componentType",
+                                                            component, "count", (json_int_t)count, "type", type)) != 0;
+    l->bytes += (uint64_t)count * size;
+    return (json_int_t)json_array_size(l->accessors) - 1;
+}
+
+static json_t *float_vector_json(vec3 v)
+{
+    return json_pack("[f,f,f]", (double)(float)v.x, (double)(float)v.y, (double)(float)v.z);
+}
+
+/* The accessors of the vertices. The format wants the bounds of all positions, used or not. */
+static void add_vertices(const mesh *m, bool mirrored, glb_layout *l)
+{
+    vec3 low = mirrored_if(mirrored, m->vertices[0]), high = low;
+    for (size_t v = 1; v < m->vertex_count; v++) {
+        const vec3 p = mirrored_if(mirrored, m->vertices[v]);
+        low = vec3_make(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+        high = vec3_make(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+    }
+    const json_int_t positions = add_array(l, GL_VERTICES, GL_FLOAT, "VEC3", m->vertex_count, 12);
+    json_t *one = json_array_get(l->accessors, (size_t)positions);
+    l->bad |= json_object_set_new(one, "min", float_vector_json(low)) != 0;
+    l->bad |= json_object_set_new(one, "max", float_vector_json(high)) != 0;
+    l->bad |= json_object_set_new(l->attributes, "POSITION", json_integer(positions)) != 0;
+    if (m->normals)
+        l->bad |=
+            json_object_set_new(l->attributes, "NORMAL",
+                                json_integer(add_array(l, GL_VERTICES, GL_FLOAT, "VEC3", m->vertex_count, 12))) != 0;
+    if (m->uvs)
+        l->bad |=
+            json_object_set_new(l->attributes, "TEXCOORD_0",
+                                json_integer(add_array(l, GL_VERTICES, GL_FLOAT, "VEC2", m->vertex_count, 8))) != 0;
+}
+
+/* A path as a URI reference: RFC 3986, 2.3 and 3.3. */
+static json_t *uri_json(const char *path)
+{
+    text_writer to;
+    char *text = NULL;
+    size_t size;
+    if (text_writer_open(&to, NULL) != STATUS_OK)
+        return NULL;
+    for (const char *c = path; *c; c++) {
+        const bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
+                           strchr("/-._~!$&'()*+,;=@", *c);
+        fprintf(to.stream, plain ? "%c" : "%%%02X", (unsigned char)*c);
+    }
+    json_t *result = text_writer_end(&to, STATUS_OK, &text, &size, NULL) == STATUS_OK ? json_string(text) : NULL;
+    free(text);
+    return result;
+}
+
+/* Adds a material, and its image. Colours are in [0, 1] in this format. */
+static json_t *material_json(const imported_material *m, const char *name, json_t *images, json_t *textures, bool *bad)
+{
+    double c[4] = {1.0, 1.0, 1.0, 1.0};
+    for (int k = 0; m && m->given && k < 3; k++)
+        c[k] = fmin(m->color[k], 1.0);
+    if (m && m->given)
+        c[3] = m->opacity;
+    json_t *surface = json_pack("{s:[f,f,f,f],s:f,s:f}", "baseColorFactor", c[0], c[1], c[2], c[3], "metallicFactor",
+                                0.0, "roughnessFactor", 1.0);
+    if (m && m->texture) {
+        *bad |= json_array_append_new(images, json_pack("{s:o}", "uri", uri_json(m->texture))) != 0;
+        const json_int_t last = (json_int_t)json_array_size(images) - 1;
+        *bad |= json_array_append_new(textures, json_pack("{s:I}", "source", last)) != 0;
+        *bad |= json_object_set_new(surface, "baseColorTexture", json_pack("{s:I}", "index", last)) != 0;
+    }
+    json_t *one = json_pack("{s:o,s:b}", "pbrMetallicRoughness", surface, "doubleSided", 1);
+    if (name && name[0])
+        *bad |= json_object_set_new(one, "name", json_of_text(name)) != 0;
+    if (c[3] < 1.0)
+        *bad |= json_object_set_new(one, "alphaMode", json_string("BLEND")) != 0;
+    return one;
+}
+
+/* The first chunk's document; NULL when out of memory. */
+static json_t *glb_json(const mesh *m, const imported_material *materials, bool mirrored, glb_layout *l)
+{
+    json_t *primitives = json_array(), *list = json_array(), *images = json_array(), *textures = json_array();
+    *l = (glb_layout){.views = json_array(), .accessors = json_array(), .attributes = json_object()};
+    for (size_t t = 0; t < m->triangle_count; t++)
+        l->by_slot[m->slots ? m->slots[t] : 0]++;
+    add_vertices(m, mirrored, l);
+    for (int slot = 0; slot < m->slot_count; slot++) {
+        l->bad |= json_array_append_new(list, material_json(materials ? &materials[slot] : NULL, m->slot_names[slot],
+                                                            images, textures, &l->bad)) != 0;
+        if (l->by_slot[slot] == 0)
+            continue;
+        const json_int_t indices = add_array(l, GL_INDICES, GL_UINT, "SCALAR", 3 * l->by_slot[slot], 4);
+        l->bad |= json_array_append_new(primitives, json_pack("{s:O,s:I,s:i}", "attributes", l->attributes, "indices",
+                                                              indices, "material", slot)) != 0;
+    }
+    const bool bad = l->bad || !images || !textures;
+    json_t *all = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:[{s:i}],s:[{s:o}],s:o,s:o,s:o,s:[{s:I}]}", "asset",
+                            "version", "2.0", "generator", "Cuvette", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh",
+                            0, "meshes", "primitives", primitives, "materials", list, "accessors", l->accessors,
+                            "bufferViews", l->views, "buffers", "byteLength", (json_int_t)l->bytes);
+    json_decref(l->attributes);
+    int error = bad || !all;
+    if (all && json_array_size(images) > 0)
+        error |= json_object_set(all, "images", images) | json_object_set(all, "textures", textures);
+    json_decref(images);
+    json_decref(textures);
+    if (error) {
+        json_decref(all);
+        return NULL;
+    }
+    return all;
+}
+
+static void put_numbers(const mesh *m, bool mirrored, const glb_layout *l, FILE *stream)
+{
+    for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++)
+        put_vector(mirrored_if(mirrored, m->vertices[v]), true, stream);
+    for (size_t v = 0; m->normals && v < m->vertex_count && !cancel_asked(); v++)
+        put_vector(mirrored_if(mirrored, m->normals[v]), true, stream);
+    for (size_t v = 0; m->uvs && v < m->vertex_count && !cancel_asked(); v++) {
+        put_real(m->uvs[v].u, true, stream);
+        put_real(1.0 - m->uvs[v].v, true, stream); /* v runs downwards */
+    }
+    for (int slot = 0; slot < m->slot_count; slot++)
+        for (size_t t = 0; l->by_slot[slot] && t < m->triangle_count && !cancel_asked_at(t); t++)
+            for (int k = 0; (m->slots ? m->slots[t] : 0) == slot && k < 3; k++)
+                put_bits(corner_if(mirrored, &m->triangles[t], k), 4, stream);
+}
+
+static status write_glb(const mesh *m, const imported_material *materials, bool mirrored, FILE *stream, diagnostic *why)
+{
+    if (m->triangle_count == 0)
+        return diagnose(why, STATUS_BAD_INPUT, "write another format", "a GLB file needs triangles");
+    glb_layout l;
+    json_t *document = glb_json(m, materials, mirrored, &l);
+    char *text = document ? json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(document);
+    if (!text)
+        return out_of_memory(why);
+    const uint64_t length = strlen(text), padded = (length + 3) / 4 * 4,
+                   all = GLB_HEADER + 2 * GLB_CHUNK + padded + l.bytes;
+    if (all > UINT32_MAX) {
+        free(text);
+        return diagnose(why, STATUS_BAD_INPUT, "write a PLY file", "the mesh is too large for a GLB file");
+    }
+    fputs("glTF", stream);
+    put_bits(2, 4, stream);
+    put_bits(all, 4, stream);
+    put_bits(padded, 4, stream);
+    fputs("JSON", stream);
+    fprintf(stream, "%-*s", (int)padded, text);
+    free(text);
+    put_bits(l.bytes, 4, stream);
+    fwrite("BIN", 1, 4, stream);
+    put_numbers(m, mirrored, &l, stream);
+    return STATUS_OK;
+}
+
+double mesh_rounding(const mesh *m)
+{
+    double most = 0.0;
+    for (size_t v = 0; !m->single && v < m->vertex_count; v++) {
+        const vec3 p = m->vertices[v];
+        most = fmax(most, fmax(fabs((double)(float)p.x - p.x),
+                               fmax(fabs((double)(float)p.y - p.y), fabs((double)(float)p.z - p.z))));
+    }
+    return most;
+}
+
+status mesh_write(const mesh *m, const imported_material *materials, mesh_format format, bool mirrored, FILE *stream,
+                  diagnostic *why)
 {
     switch (format) {
-    case MESH_OBJ: write_obj(m, mirrored, stream); return;
-    case MESH_BIN: write_bin(m, stream); return;
-    case MESH_PLY: write_ply(m, mirrored, stream); return;
-    case MESH_FORMAT_COUNT: return;
+    case MESH_OBJ: write_obj(m, mirrored, stream); return STATUS_OK;
+    case MESH_PLY: write_ply(m, mirrored, stream); return STATUS_OK;
+    case MESH_GLB: return write_glb(m, materials, mirrored, stream, why);
+    case MESH_FORMAT_COUNT: break;
     }
+    return STATUS_OK;
 }

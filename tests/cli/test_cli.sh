@@ -358,18 +358,12 @@ check "mesh --json" is "$(json schema triangles vertices closed hole single)" "$
 run mesh --generate sparse --count 3 --json
 check "mesh --json: no volume, but the hole" is "$(json closed volume hole.triangle hole.sharing)" \
     "$(lines false null 0 1)"
-run mesh --generate sparse --count 100 -f bin
-check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 out | wc -w)" "3600 3"
-run mesh --generate torus --around 5 --tube 4 -f bin
-check "mesh -f bin: 72 bytes a triangle that floats cannot represent" is "$(wc -c <out)" $((40 * 72))
 # checksums of the dumps of these triangles by the peers' program embree_bench, whose axes are the world's
 run mesh --generate sparse --count 100 -f obj
 check "mesh -f obj equals the dump of embree_bench in right-handed axes" is "$(awk '
     $1 == "v" && !sub(/^-/, "", $4) { $4 = "-" $4 }
     $1 == "f" { corner = $3; $3 = $4; $4 = corner }
     1' out | cksum)" "894476047 13145"
-run mesh --generate sparse --count 100 -f bin
-check "mesh -f bin equals the dump of embree_bench" is "$(cksum <out)" "1098474655 3600"
 run mesh --generate torus --around 5 --tube 4 -f obj -o torus.obj
 check "mesh -o writes a file and prints nothing" is \
     "$code $(cat out err | wc -c) $(grep -c ^v torus.obj) $(grep -c ^f torus.obj)" "0 0 30 40"
@@ -395,6 +389,91 @@ for pair in obj:flat ply:smooth; do
     run render two.yaml --json -o two.png
     check "a generated mesh and its ${pair%:*} file have one film" is "$code $(json film_hash)" "0 $once"
 done
+# A GLB file by an independent reader: every number, index and offset.
+cat >glb.py <<'END'
+import json, struct, sys
+b = open(sys.argv[1], 'rb').read()
+magic, version, length, size, kind = struct.unpack('<4sIII4s', b[:20])
+assert (magic, version, length, kind) == (b'glTF', 2, len(b), b'JSON') and size % 4 == 0
+j = json.loads(b[20:20 + size])
+rest, kind = struct.unpack('<I4s', b[20 + size:28 + size])
+data = b[28 + size:]
+assert kind == b'BIN\0' and rest == len(data) == j['buffers'][0]['byteLength'] and rest % 4 == 0
+def read(index):
+    a = j['accessors'][index]
+    v = j['bufferViews'][a['bufferView']]
+    n = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3}[a['type']]
+    assert v['byteOffset'] % 4 == 0 and v['byteLength'] == 4 * n * a['count']
+    assert v['byteOffset'] + v['byteLength'] <= rest
+    all = struct.unpack_from('<%d%s' % (n * a['count'], {5126: 'f', 5125: 'I'}[a['componentType']]), data,
+                             v['byteOffset'])
+    rows = [all[i:i + n] for i in range(0, len(all), n)]
+    if 'min' in a:
+        assert [list(map(f, zip(*rows))) for f in (min, max)] == \
+            [[struct.unpack('f', struct.pack('f', x))[0] for x in a[k]] for k in ('min', 'max')]
+    return rows
+for p in j['meshes'][0]['primitives']:
+    at = {name: read(index) for name, index in p['attributes'].items()}
+    assert len({len(rows) for rows in at.values()}) == 1
+    for n in at.get('NORMAL', []):
+        assert abs(sum(x * x for x in n) - 1) < 1e-6
+    corners = [i for i, in read(p['indices'])]
+    m = j['materials'][p['material']]
+    pbr = m['pbrMetallicRoughness']
+    image = 'baseColorTexture' in pbr and j['images'][j['textures'][pbr['baseColorTexture']['index']]['source']]['uri']
+    print(m.get('name'), [round(c, 6) for c in pbr['baseColorFactor']], image, m.get('alphaMode'))
+    for t in range(0, len(corners), 3):
+        print(*('%g,%g,%g' % at['POSITION'][i] for i in corners[t:t + 3]),
+              *('%g,%g' % at['TEXCOORD_0'][i] for i in corners[t:t + 3] if 'TEXCOORD_0' in at))
+END
+printf '%s\n' 'newmtl red' 'Kd 1 0.25 0.5' 'map_Kd my%20paint.png' 'newmtl glass' 'Kd 0 1 0' 'd 0.25' >two.mtl
+printf 'x' >'my paint.png'
+printf '%s\n' 'mtllib two.mtl' 'v 0 0 0' 'v 1 0 0' 'v 1 2 0' 'v 0 2 -0.5' 'vt 0 0' 'vt 1 0' 'vt 1 0.75' 'usemtl red' \
+    'f 1/1 2/2 3/3' 'usemtl glass' 'f 1/1 3/3 4/2' >two.obj
+run mesh two.obj -o two.glb
+check "mesh -o x.glb" is "$code $(cat err) $(python3 glb.py two.glb)" "0  $(lines \
+    "red [1.0, 0.25, 0.5, 1.0] my%20paint.png None" '0,0,0 1,0,0 1,2,0 0,1 1,1 1,0.25' \
+    'glass [0.0, 1.0, 0.0, 0.25] False BLEND' '0,0,0 1,2,0 0,2,-0.5 0,1 1,0.25 1,1')"
+run mesh --generate torus --around 5 --tube 4 -o torus.glb
+check "mesh -o x.glb says how far positions change" grep -qE \
+    '^cuvette: note: GLB files have single precision: positions change by up to [1-9](\.[0-9])?e-0[78]' err
+check "mesh -o x.glb of a torus" is "$code $(python3 glb.py torus.glb | wc -l)" "0 41"
+run mesh --generate sphere --count 80 -f glb -o ball.glb
+run mesh --generate sphere --count 80 -f ply -o ball.ply
+gzip -k ball.ply torus.obj
+for file in ball.glb ball.ply ball.ply.gz; do
+    printf '%s\n' 'render: {width: 40, height: 30, depth: 2}' "meshes: {ball: {file: $file}}" \
+        'camera: {position: [0.5, 1, -2], target: [0, 0.3, 0]}' 'lights: {lamp: {position: [3, 5, -4]}}' \
+        'solids: {s: {shape: mesh, mesh: ball, shading: flat, transparency: 1, ior: 1.5}}' >ball.yaml
+    run render ball.yaml --json -o ball.png
+    echo "$code $(json film_hash)"
+done | sort -u | wc -l >films
+check "a scene reads GLB, PLY and PLY.gz alike" is "$(cat films)" 1
+run mesh torus.obj.gz -o again.obj
+check "mesh reads a compressed OBJ" is "$code $(triangles again.obj)" "0 $(triangles torus.obj)"
+head -c 200 torus.obj.gz >cut.obj.gz
+run mesh cut.obj.gz
+check "mesh refuses a compressed file that is cut short, by its name" is "$code $(cat err)" \
+    "2 cuvette: cut.obj.gz: the compressed file is damaged; check that the file is complete, or compress it again"
+head -c 3000000000 /dev/zero | gzip -1 >bomb.obj.gz
+run mesh bomb.obj.gz --memory-limit 100M
+check "mesh refuses a compressed file that is too large" is "$code $(grep -c 'bomb.obj.gz: .*memory' err)" "2 1"
+rm bomb.obj.gz
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'f 1 2 x' >bad.obj
+run mesh bad.obj
+check "mesh names the file and the line" is "$code $(cut -c 1-19 err)" "2 cuvette: bad.obj:3:"
+# --- mesh --close
+head -n -2 torus.obj >open.obj
+run mesh open.obj --close -o closed.obj
+check "mesh --close says what it did" is "$code $(cat err)" "0 cuvette: note: welded 0 vertices; dropped 0 degenerate \
+and 0 double triangles; swapped 0 diagonals; turned 0 over; filled 1 hole with 2 triangles: 4 edges, 0.951 wide"
+run mesh closed.obj
+check "mesh --close closes" is "$(grep -cE '^closed +yes' out) $(grep -cE '^triangles +40' out)" "1 1"
+run mesh torus.obj --weld=0.1
+check "--weld needs --close" is "$code $(cat err)" "2 cuvette: mesh: --weld has no effect without --close; add --close"
+run mesh torus.obj --close --weld=9
+check "mesh --close refuses a distance that joins everything, by the file's name" is "$code $(cut -d';' -f1 err)" \
+    "2 cuvette: torus.obj: vertices of a mesh of size 2.8 cannot be welded within 9"
 run mesh --generate box -f ply
 check "mesh -f ply: header and bytes" is \
     "$(head -c 35 out | tr '\n' ' ') $(($(wc -c <out) - $(grep -am1 -bo end_header out | cut -d: -f1) - 11))" \
