@@ -248,14 +248,12 @@ static json_t *uri_json(const char *path)
 /* Adds a material, and its image. Colours are in [0, 1] in this format. */
 static json_t *material_json(const imported_material *m, const char *name, json_t *images, json_t *textures, bool *bad)
 {
-    double c[4] = {1.0, 1.0, 1.0, 1.0};
-    for (int k = 0; m && m->given && k < 3; k++)
+    double c[4] = {0.0, 0.0, 0.0, m->opacity};
+    for (int k = 0; k < 3; k++)
         c[k] = fmin(m->color[k], 1.0);
-    if (m && m->given)
-        c[3] = m->opacity;
     json_t *surface = json_pack("{s:[f,f,f,f],s:f,s:f}", "baseColorFactor", c[0], c[1], c[2], c[3], "metallicFactor",
                                 0.0, "roughnessFactor", 1.0);
-    if (m && m->texture) {
+    if (m->texture) {
         *bad |= json_array_append_new(images, json_pack("{s:o}", "uri", uri_json(m->texture))) != 0;
         const json_int_t last = (json_int_t)json_array_size(images) - 1;
         *bad |= json_array_append_new(textures, json_pack("{s:I}", "source", last)) != 0;
@@ -278,23 +276,29 @@ static json_t *glb_json(const mesh *m, const imported_material *materials, bool 
         l->by_slot[m->slots ? m->slots[t] : 0]++;
     add_vertices(m, mirrored, l);
     for (int slot = 0; slot < m->slot_count; slot++) {
-        l->bad |= json_array_append_new(list, material_json(materials ? &materials[slot] : NULL, m->slot_names[slot],
-                                                            images, textures, &l->bad)) != 0;
         if (l->by_slot[slot] == 0)
             continue;
         const json_int_t indices = add_array(l, GL_INDICES, GL_UINT, "SCALAR", 3 * l->by_slot[slot], 4);
-        l->bad |= json_array_append_new(primitives, json_pack("{s:O,s:I,s:i}", "attributes", l->attributes, "indices",
-                                                              indices, "material", slot)) != 0;
+        json_t *one = json_pack("{s:O,s:I}", "attributes", l->attributes, "indices", indices);
+        if (materials && materials[slot].given) {
+            l->bad |= json_object_set_new(one, "material", json_integer((json_int_t)json_array_size(list))) != 0;
+            l->bad |= json_array_append_new(
+                          list, material_json(&materials[slot], m->slot_names[slot], images, textures, &l->bad)) != 0;
+        }
+        l->bad |= json_array_append_new(primitives, one) != 0;
     }
-    const bool bad = l->bad || !images || !textures;
-    json_t *all = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:[{s:i}],s:[{s:o}],s:o,s:o,s:o,s:[{s:I}]}", "asset",
-                            "version", "2.0", "generator", "Cuvette", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh",
-                            0, "meshes", "primitives", primitives, "materials", list, "accessors", l->accessors,
-                            "bufferViews", l->views, "buffers", "byteLength", (json_int_t)l->bytes);
+    const bool bad = l->bad || !list || !images || !textures;
+    json_t *all = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:[{s:i}],s:[{s:o}],s:o,s:o,s:[{s:I}]}", "asset", "version",
+                            "2.0", "generator", "Cuvette", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh", 0,
+                            "meshes", "primitives", primitives, "accessors", l->accessors, "bufferViews", l->views,
+                            "buffers", "byteLength", (json_int_t)l->bytes);
     json_decref(l->attributes);
     int error = bad || !all;
+    if (all && json_array_size(list) > 0) /* the format has no empty lists */
+        error |= json_object_set(all, "materials", list);
     if (all && json_array_size(images) > 0)
         error |= json_object_set(all, "images", images) | json_object_set(all, "textures", textures);
+    json_decref(list);
     json_decref(images);
     json_decref(textures);
     if (error) {

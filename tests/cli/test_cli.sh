@@ -418,8 +418,8 @@ for p in j['meshes'][0]['primitives']:
     for n in at.get('NORMAL', []):
         assert abs(sum(x * x for x in n) - 1) < 1e-6
     corners = [i for i, in read(p['indices'])]
-    m = j['materials'][p['material']]
-    pbr = m['pbrMetallicRoughness']
+    m = j['materials'][p['material']] if 'material' in p else {}
+    pbr = m.get('pbrMetallicRoughness', {'baseColorFactor': []})
     image = 'baseColorTexture' in pbr and j['images'][j['textures'][pbr['baseColorTexture']['index']]['source']]['uri']
     print(m.get('name'), [round(c, 6) for c in pbr['baseColorFactor']], image, m.get('alphaMode'))
     for t in range(0, len(corners), 3):
