@@ -55,7 +55,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     -f | --format)
         case ${COMP_WORDS[1]-} in
         study) _cuvette_words png svg pdf ;;
-        *) _cuvette_words obj bin ply ;;
+        *) _cuvette_words obj ply glb ;;
         esac
         ;;
     --log) _cuvette_words x y xy none ;;
@@ -75,7 +75,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
-        mesh) _cuvette_files 'obj|bin|ply' ;;
+        mesh) _cuvette_files 'obj|ply|glb' ;;
         study)
             case ${COMP_WORDS[2]-} in
             plot) _cuvette_files 'png|svg|pdf' ;;
@@ -107,7 +107,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --truth) _cuvette_words same larger smaller ;;
     --cells | --designs | --effect | --draws | --seed) COMPREPLY=() ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
-    --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size) COMPREPLY=() ;;
+    --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size | --weld) COMPREPLY=() ;;
     --port | --threads | --memory-limit | --layers | --process | --processes) COMPREPLY=() ;;
     -r | --results | --folder)
         compopt -o filenames
@@ -204,7 +204,7 @@ _cuvette()
         fi
         ;;
     mesh)
-        _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --depth --seed --format --output --json \
+        _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --depth --seed --close --weld --format --output --json \
             --memory-limit --help --usage --version
         ;;
     study)

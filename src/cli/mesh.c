@@ -153,8 +153,8 @@ static status read_file(mesh_request *request, diagnostic *why)
 
 static status generate(mesh_request *request, diagnostic *why)
 {
-    TRY(scene_check(request->scene, why));
-    const status code = scene_input_load(request->scene, why);
+    status code = scene_check(request->scene, why);
+    THEN(code, scene_input_load(request->scene, why));
     if (code == STATUS_BAD_INPUT)
         diagnostic_locate(why, "--generate", 0, 0);
     request->made = request->scene->meshes[0].data;
