@@ -35,8 +35,8 @@ typedef struct file_text {
     size_t size, mapped; /* mapped: bytes of the mapping; 0: it is allocated */
 } file_text;
 
-/* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed. files_release frees the text.
- * An errno, or 0; EBADMSG: the compressed data is damaged. */
+/* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed. files_release frees the
+ * text. An errno, or 0; EBADMSG: the compressed data is damaged. */
 int files_read(int fd, file_text *text);
 void files_release(file_text *text);
 

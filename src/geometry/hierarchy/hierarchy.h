@@ -38,8 +38,8 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
 /* A closed mesh as the union of `count` layers: the mesh itself if its shells (mesh.h) neither overlap nor lie in one
  * another except as hollows; otherwise meshes that are copies of some of its shells, in each of which this holds. The
  * union is where the mesh's winding number is not 0. A shell that is inside out, and no hollow, is turned over. A shell
- * that crosses itself is not noticed. The mesh owns the layers, until mesh_move. Thread-safe. STATUS_BAD_INPUT, with the
- * place: a hollow crosses another shell, or more than 32 layers are needed; otherwise as hierarchy_build. */
+ * that crosses itself is not noticed. The mesh owns the layers, until mesh_move. Thread-safe. STATUS_BAD_INPUT, with
+ * the place: a hollow crosses another shell, or more than 32 layers are needed; otherwise as hierarchy_build. */
 status hierarchy_layers(const mesh *m, int threads, const mesh *const **layers, int *count, diagnostic *why);
 
 /* Refits a bvh to its mesh after the vertices moved: triangles and boxes are recomputed bottom up, the tree is kept

@@ -1,7 +1,7 @@
-/* A closed mesh whose shells overlap as the union of layers in which they do not. A ray knows of each solid only whether
- * it is inside, so that the tracer needs a winding number of 0 or 1 everywhere in a mesh. Shells are put into layers,
- * the largest first, so that this holds in each layer: the sum of the layers' winding numbers is that of the mesh, and
- * is 0 where all of them are. Layers are solids of one medium, between which there is no interface.
+/* A closed mesh whose shells overlap as the union of layers in which they do not. A ray knows of each solid only
+ * whether it is inside, so that the tracer needs a winding number of 0 or 1 everywhere in a mesh. Shells are put into
+ * layers, the largest first, so that this holds in each layer: the sum of the layers' winding numbers is that of the
+ * mesh, and is 0 where all of them are. Layers are solids of one medium, between which there is no interface.
  *
  * Two shells whose boxes overlap cross if an edge of one meets a triangle of the other; of two that do not cross, one
  * contains the other if the winding number around a corner says so. Both are found with rays (hierarchy.h). */

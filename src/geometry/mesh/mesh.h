@@ -131,12 +131,12 @@ typedef struct mesh_repairs {
 
 /* A closed copy of a finished mesh: moves each vertex to the first one within the distance `weld` (0: at the same
  * place), drops what repairs->degenerate and ->duplicate count, divides quadrilaterals by their other diagonal where
- * more than two triangles meet in one, turns triangles so that neighbours agree, and fills
- * holes: with the triangulation of least area of its corners (Barequet and Sharir, "Filling gaps in the boundary of a
- * polyhedron", CAGD 12(2), 1995), or, if that would use an edge of the mesh or has more than 400 corners, around a new
- * vertex at their mean. New triangles have the slot of a neighbour, and vertices of their own if the mesh has normals.
- * The caller frees repairs->fills, also after a failure, and releases the mesh. STATUS_BAD_INPUT, with the place, if the
- * result is not closed: more than two triangles share an edge, or the surface has one side. Otherwise as mesh_finish. */
+ * more than two triangles meet in one, turns triangles so that neighbours agree, and fills holes: with the
+ * triangulation of least area of its corners (Barequet and Sharir, "Filling gaps in the boundary of a polyhedron", CAGD
+ * 12(2), 1995), or, if that would use an edge of the mesh or has more than 400 corners, around a new vertex at their
+ * mean. New triangles have the slot of a neighbour, and vertices of their own if the mesh has normals. The caller frees
+ * repairs->fills, also after a failure, and releases the mesh. STATUS_BAD_INPUT, with the place, if the result is not
+ * closed: more than two triangles share an edge, or the surface has one side. Otherwise as mesh_finish. */
 status mesh_repair(const mesh *m, double weld, mesh_repairs *repairs, mesh **out, diagnostic *why);
 
 /* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */

@@ -46,8 +46,8 @@ typedef struct mesh_neighbours {
 status mesh_neighbours_make(const mesh *m, mesh_neighbours *out, diagnostic *why);
 void mesh_neighbours_free(mesh_neighbours *n);
 
-/* Turns triangles so that neighbours agree, as mesh_finish describes, and counts them. On a one-sided surface nothing is
- * turned, and *against is a half-edge where neighbours cannot agree; else SIZE_MAX. The mates are then invalid. */
+/* Turns triangles so that neighbours agree, as mesh_finish describes, and counts them. On a one-sided surface nothing
+ * is turned, and *against is a half-edge where neighbours cannot agree; else SIZE_MAX. The mates are then invalid. */
 status mesh_turn_alike(mesh *m, const uint32_t *same, const uint32_t *mates, size_t *turned, size_t *against,
                        diagnostic *why);
 

@@ -55,8 +55,8 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-/* Sets *out to the hierarchy of the mesh: the one that the mesh keeps, or one built for this frame, which the plan stores
- * for the first solid with this mesh and the others use. */
+/* Sets *out to the hierarchy of the mesh: the one that the mesh keeps, or one built for this frame, which the plan
+ * stores for the first solid with this mesh and the others use. */
 static status tree_of(const scene *s, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;

@@ -1,5 +1,5 @@
-/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, in the metadata of a PNG image, or in a
- * shared page. */
+/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, in the metadata of a PNG image, or in
+ * a shared page. */
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/text.h"

@@ -202,7 +202,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
     if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE)
         return STATUS_OK;
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
-    return diagnose(why, STATUS_BAD_INPUT, "close the mesh (cuvette mesh --close), or make the solid opaque (transparency 0)",
+    return diagnose(why, STATUS_BAD_INPUT,
+                    "close the mesh (cuvette mesh --close), or make the solid opaque (transparency 0)",
                     "%.80s is transparent, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, "
                     "%g) of triangle %zu belongs to %d triangles instead of 2",
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
