@@ -241,7 +241,7 @@ typedef struct edge_findings {
     size_t joined;  /* of these, edges that joined two parts */
 } edge_findings;
 
-/* The first triangle of a connected part, in a forest in which a triangle points to an earlier one of its part. */
+/* The first triangle of a connected part, in an array where a triangle points to an earlier one of its part. */
 static uint32_t part_of(uint32_t *parts, uint32_t triangle)
 {
     for (; parts[triangle] != triangle; triangle = parts[triangle])
@@ -455,7 +455,7 @@ static status orient_all(mesh *m, const edge_lists *lists, diagnostic *why)
     return result;
 }
 
-/* A forest for join_parts in which each triangle is a part. */
+/* An array for join_parts in which each triangle is a part. */
 static status parts_make(const mesh *m, uint32_t **parts, diagnostic *why)
 {
     uint32_t *list = *parts = allocate_numbers(m->triangle_count + 1);

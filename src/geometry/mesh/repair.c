@@ -20,9 +20,9 @@ typedef struct repair {
     size_t edge_room, edge_count;
     uint32_t *loop; /* corners of a hole: vertices, in the order of the new triangles */
     size_t loop_room;
-    vec3 *centres;    /* new vertices, after those of the mesh */
-    uint32_t *beside; /* by new vertex: a corner of its hole */
-    size_t centre_count, centre_room, beside_room;
+    vec3 *centres; /* new vertices, after those of the mesh */
+    uint32_t *rim; /* by new vertex: a corner of its hole */
+    size_t centre_count, centre_room, rim_room;
     uint32_t (*added)[4]; /* new triangles: corners, and the hole */
     size_t added_room;
     uint8_t *slots; /* by hole */
@@ -305,13 +305,13 @@ static status add_part(repair *r, const uint32_t *c, size_t n, size_t i, size_t 
 
 static status add_fan(repair *r, const uint32_t *c, size_t n, diagnostic *why)
 {
-    if (!GROW(r->centres, r->centre_room, r->centre_count + 1) || !GROW(r->beside, r->beside_room, r->centre_count + 1))
+    if (!GROW(r->centres, r->centre_room, r->centre_count + 1) || !GROW(r->rim, r->rim_room, r->centre_count + 1))
         return out_of_memory(why);
     vec3 sum = vec3_make(0.0, 0.0, 0.0);
     for (size_t i = 0; i < n; i++)
         sum = vec3_add(sum, r->m->vertices[c[i]]);
     r->centres[r->centre_count] = vec3_scale(sum, 1.0 / (double)n);
-    r->beside[r->centre_count] = c[0];
+    r->rim[r->centre_count] = c[0];
     const uint32_t centre = (uint32_t)(r->m->vertex_count + r->centre_count++);
     for (size_t i = 0; i < n; i++)
         TRY(add_triangle(r, c[i], c[(i + 1) % n], centre, why));
@@ -329,7 +329,7 @@ static double span_of(const mesh *m, const uint32_t *c, size_t n)
     return fmax(fmax(high.x - low.x, high.y - low.y), high.z - low.z);
 }
 
-/* Fills the hole with corners c, beside a triangle of that slot. */
+/* Fills the hole with corners c, at a triangle of that slot. */
 static status fill(repair *r, const uint32_t *c, size_t n, uint8_t slot, diagnostic *why)
 {
     mesh_repairs *counts = r->counts;
@@ -464,7 +464,7 @@ static void fill_vertices(const repair *r, const vertex_copy *copies, mesh *out)
     for (size_t v = 0; v < out->vertex_count; v++) {
         const uint32_t from = copies[v].from;
         const bool centre = from >= m->vertex_count;
-        const uint32_t like = centre ? r->beside[from - m->vertex_count] : from;
+        const uint32_t like = centre ? r->rim[from - m->vertex_count] : from;
         out->vertices[v] = centre ? r->centres[from - m->vertex_count] : m->vertices[from];
         if (out->normals && !copies[v].flat) /* a zero normal becomes the triangle's */
             out->normals[v] = m->normals[from];
@@ -565,7 +565,7 @@ status mesh_repair(const mesh *m, double weld, mesh_repairs *repairs, mesh **out
     free(r.edges);
     free(r.loop);
     free(r.centres);
-    free(r.beside);
+    free(r.rim);
     free(r.added);
     free(r.slots);
     free(r.visits);
