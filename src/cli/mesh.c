@@ -103,7 +103,7 @@ static const command_form form = {
              "  cuvette mesh teapot.obj\n"
              "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
              "  cuvette mesh --generate sparse --count 50000 -f obj -o sparse.obj\n"
-             "  cuvette mesh bunny.obj --close --weld=0.0001 -o closed.ply\n"
+             "  cuvette mesh --generate terrain --close -o closed.ply\n"
              "Sparse, dense and sphere are the triangle sets of the speed study; they are bit-identical on every "
              "machine.",
 };
