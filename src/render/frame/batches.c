@@ -48,7 +48,7 @@ static void run_rays(tracer *t, int depth)
         absorption_dim(t, q, first, rays.count);
     }
     hit_groups *groups = &t->batch.groups;
-    hit_groups_make(&t->batch.hits, rays.count, p->shading_class, t->marks, t->marks + p->geometry->primitive_count,
+    t->grouping->list(&t->batch.hits, rays.count, p->shading_class, t->marks, t->marks + p->geometry->primitive_count,
                     groups);
     if (groups->missed > 0)
         t->frame_integrator->background(t, q, first, groups->miss, groups->missed);

@@ -17,12 +17,14 @@ tracer *tracer_create(isa level)
 {
     static const geometry_kernels *const geometry[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
     static const shade_kernels *const shade[ISA_COUNT] = ISA_ARRAY(shade_kernels);
+    static const group_kernels *const grouping[ISA_COUNT] = ISA_ARRAY(group_kernels);
     static const sampling_kernels *const sampling[ISA_COUNT] = ISA_ARRAY(sampling_kernels);
     tracer *t = aligned_alloc(64, (sizeof(tracer) + 63) / 64 * 64);
     if (!t)
         return NULL;
     memset(t, 0, offsetof(tracer, batch));
     t->geometry = geometry[level];
+    t->grouping = grouping[level];
     t->shade = shade[level];
     t->sampling = sampling[level];
     return t;
@@ -123,7 +125,7 @@ static bool begin_integrator(tracer *t)
     return !wanted->begin || wanted->begin(t);
 }
 
-/* Allocates a mark for each primitive and each priority index: see hit_groups_make. */
+/* Allocates a mark for each primitive and each priority index: see group_kernels. */
 static bool make_marks(tracer *t, const scene_geometry *g)
 {
     const size_t count = (size_t)g->primitive_count + (size_t)g->region_count + 1;

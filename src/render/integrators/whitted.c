@@ -28,7 +28,7 @@ static bool make_branches(tracer *t, bool opaque)
 static void follow_branches(tracer *t, int depth)
 {
     const group *g = &t->surface.gathered;
-    const branch_group *b = &t->surface.branches;
+    branch_group *b = &t->surface.branches;
     if (t->crystals && t->crystals->any)
         crystals_follow(t, depth);
     if (depth == t->queues.depth_limit) {

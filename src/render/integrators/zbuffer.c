@@ -381,7 +381,7 @@ static void place(tracer *t, const int *list)
 static void branch(tracer *t, int depth)
 {
     const group *g = &t->surface.gathered;
-    const branch_group *b = &t->surface.branches;
+    branch_group *b = &t->surface.branches;
     shading_branches(t, false);
     if (depth == t->queues.depth_limit) {
         cut_branches(t);

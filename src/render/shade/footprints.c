@@ -204,12 +204,13 @@ static void branch(tracer *t)
     w->ready = true;
 }
 
-void footprints_of_children(tracer *t, ray_queue *q, int first, bool reflected)
+void footprints_of_children(tracer *t, ray_queue *q, int first, bool reflected, const int *list, int count)
 {
     if (!t->footprints->ready)
         branch(t);
-    memcpy(q->footprint + first, reflected ? t->footprints->reflected : t->footprints->refracted,
-           (size_t)t->surface.gathered.count * sizeof *q->footprint);
+    const ray_footprint *from = reflected ? t->footprints->reflected : t->footprints->refracted;
+    for (int k = 0; k < count; k++)
+        q->footprint[first + k] = from[list[k]];
 }
 
 void footprint_straight(tracer *t, ray_queue *q, int at, int k)

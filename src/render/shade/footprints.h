@@ -28,8 +28,8 @@ void footprints_of_camera(tracer *t, ray_queue *q, int first, int count);
 /* Computes the footprints of the gathered group, rays list[0 ..] of the batch at `first`; call it when the group's
  * points are known. */
 void footprints_gather(tracer *t, const ray_queue *q, int first, const int *list);
-/* Sets the footprints of the gathered group's children, rays first .. of the queue. */
-void footprints_of_children(tracer *t, ray_queue *q, int first, bool reflected);
+/* Sets the footprints of the gathered group's children, rays first .. of the queue; list: their lanes in the group. */
+void footprints_of_children(tracer *t, ray_queue *q, int first, bool reflected, const int *list, int count);
 /* Sets the footprint of a child of ray k, at position `at` of the queue, as for an undeflected ray. */
 void footprint_straight(tracer *t, ray_queue *q, int at, int k);
 

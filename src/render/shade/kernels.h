@@ -1,5 +1,5 @@
 /* The kernels of shading and of sampling: operations on a group of rays, loops without per-ray branches, compiled
- * once for each instruction set. Shading kernels: colours, Phong's light, branches, light in film units, children.
+ * once for each instruction set. Shading kernels: colours, Phong's light, branches, light in film units.
  * Sampling kernels: random numbers, and the camera rays, directions and points of lamps that are chosen by them.
  * Ownership: the caller owns all arrays, of at most ROW elements (the tracer's scratch); nothing fails. */
 #pragma once
@@ -40,10 +40,6 @@ typedef struct shade_kernels {
     /* Fractions of the rays' radiance, in film units. */
     void (*arrived)(int count, const double *fraction, const double *r, const double *g, const double *b,
                     film_light *out);
-    /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; the caller then removes rays of
-     * weight 0. */
-    void (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
-                   const uint64_t *inside, ray_queue *q);
     /* Transmittances of optical depths, in place: 1 for 0. */
     void (*absorb)(double *depth, int count);
     texture_tinter *tint; /* a texture's colours */

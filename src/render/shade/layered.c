@@ -134,13 +134,14 @@ vec3 layered_mean(const tracer *t, int k)
     return sum;
 }
 
-void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected)
+void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected, const int *list, int count)
 {
     const group *g = &t->surface.gathered;
-    for (int k = 0; k < g->count; k++) {
-        const vec3 weight = layered_weight(t, k, reflected);
-        q->wr[first + k] = g->wr[k] * weight.x;
-        q->wg[first + k] = g->wg[k] * weight.y;
-        q->wb[first + k] = g->wb[k] * weight.z;
+    for (int k = 0; k < count; k++) {
+        const int i = list[k];
+        const vec3 weight = layered_weight(t, i, reflected);
+        q->wr[first + k] = g->wr[i] * weight.x;
+        q->wg[first + k] = g->wg[i] * weight.y;
+        q->wb[first + k] = g->wb[i] * weight.z;
     }
 }

@@ -31,5 +31,6 @@ vec3 layered_weight(const tracer *t, int k, bool reflected);
 /* The mean reflectance of the surface of ray k by channel: twice the integral over cosines of R times cosine. */
 vec3 layered_mean(const tracer *t, int k);
 
-/* Sets the throughputs by channel of children first .. of the queue, which were appended with mean weights. */
-void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected);
+/* Sets the throughputs by channel of children first .. of the queue, which were appended with mean weights; list: their
+ * lanes in the gathered group. */
+void layered_color_children(tracer *t, ray_queue *q, int first, bool reflected, const int *list, int count);

@@ -70,23 +70,11 @@ static void caustic_light(tracer *t, const material *m)
 /* Enqueues shadow rays to a lamp from the points where its light can change the film. */
 static void enqueue_shadow_rays(tracer *t, int lamp)
 {
-    const group *g = &t->surface.gathered;
-    const lit_group *l = &t->surface.lit;
     ray_queue *q = &t->queues.shadows;
-    int chosen[ROW], count = 0;
-    for (int i = 0; i < g->count; i++) {
-        chosen[count] = i;
-        count -= (int)l->contributes[i];
-    }
-    for (int k = 0; k < count; k++) {
-        const int i = chosen[k], at = q->count++;
-        q->ox[at] = g->points.px[i], q->oy[at] = g->points.py[i], q->oz[at] = g->points.pz[i];
-        q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
-        q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
-        q->start[at] = g->points.face[i], q->sample_key[at] = g->sample_key[i], q->inside[at] = g->inside_before[i];
-        if (t->target.frame_plan->sheets)
-            sheets_shadow_ray(t, lamp, at);
-    }
+    const int first = q->count;
+    t->grouping->append_shadows(&t->surface.gathered, &t->surface.lit, q);
+    for (int at = first; t->target.frame_plan->sheets && at < q->count; at++)
+        sheets_shadow_ray(t, lamp, at);
 }
 
 /* Multiplies the group's light, computed for a lamp of radiance 1, by the lamp's spectrum. */

@@ -322,36 +322,6 @@ static void arrived(int count, const double *fraction, const double *r, const do
     out->out_of_range = bad;
 }
 
-static void append(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
-                   const uint64_t *inside, ray_queue *q)
-{
-    const surface_batch *p = &g->points;
-    const int n = g->padded, at = q->count;
-    const ray_queue to = {.ox = q->ox + at,
-                          .oy = q->oy + at,
-                          .oz = q->oz + at,
-                          .dx = q->dx + at,
-                          .dy = q->dy + at,
-                          .dz = q->dz + at,
-                          .wr = q->wr + at,
-                          .wg = q->wg + at,
-                          .wb = q->wb + at};
-    const size_t bytes = (size_t)n * sizeof(double);
-    memcpy(to.ox, p->px, bytes), memcpy(to.oy, p->py, bytes), memcpy(to.oz, p->pz, bytes);
-    memcpy(to.dx, dx, bytes), memcpy(to.dy, dy, bytes), memcpy(to.dz, dz, bytes);
-    memcpy(q->start + at, p->face, bytes), memcpy(q->sample_key + at, g->sample_key, bytes),
-        memcpy(q->inside + at, inside, bytes);
-    double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
-    /* VECTORISE */
-    INDEPENDENT_LANES
-    for (int i = 0; i < n; i++) {
-        wr[i] = g->wr[i] * weight[i];
-        wg[i] = g->wg[i] * weight[i];
-        wb[i] = g->wb[i] * weight[i];
-    }
-    q->count += g->count;
-}
-
 static void absorb(double *restrict depth, int count)
 {
     /* VECTORISE */
@@ -360,5 +330,5 @@ static void absorb(double *restrict depth, int count)
 }
 
 const shade_kernels KERNEL(shade_kernels) = {
-    color,     direct,  spot,   fresnel_branches, constant_branches,   straight_branches, cut, own_light,
-    cut_light, arrived, append, absorb,           KERNEL(texture_tint)};
+    color,     direct,    spot,    fresnel_branches, constant_branches,   straight_branches, cut,
+    own_light, cut_light, arrived, absorb,           KERNEL(texture_tint)};

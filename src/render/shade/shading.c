@@ -257,7 +257,7 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     const int priority_index = groups->priority_index;
     const primitive *surface = &p->geometry->primitives[groups->hit_primitive];
     group *g = &t->surface.gathered;
-    group_gather(tracer_queue_at(t, depth), first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
+    t->grouping->gather(tracer_queue_at(t, depth), first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
     if (p->spectral)
         spectral_indices(t, list);
     if (t->layered)
@@ -334,66 +334,48 @@ void shading_groups(tracer *t, int depth, int first, const hit_group *groups, in
 
 /* --- branches and children --- */
 
-static bool is_below_least_weight(tracer *t, const ray_queue *q, int i, double least)
+/* Sets weights to 0 that are too small, and counts their branches. */
+static void cut_faint(tracer *t, bool colored, bool reflected, double *weight)
 {
-    if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
-        return false;
-    count_cut_by_weight(t, q->sample_key[i], q->wr[i], q->wg[i], q->wb[i]);
-    return true;
+    const group *g = &t->surface.gathered;
+    const double least = t->least_weight;
+    for (int k = 0; k < g->count; k++) {
+        const vec3 w = colored ? layered_weight(t, k, reflected) : vec3_make(weight[k], weight[k], weight[k]);
+        const double r = g->wr[k] * w.x, gr = g->wg[k] * w.y, b = g->wb[k] * w.z;
+        if (weight[k] == 0.0 || r >= least || gr >= least || b >= least)
+            continue;
+        count_cut_by_weight(t, g->sample_key[k], r, gr, b);
+        weight[k] = 0.0;
+    }
 }
 
-/* The compaction of enqueue_children, including the Stokes vectors. */
-static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
+static void polarise_children(const tracer *t, ray_queue *q, int first, bool reflected, const int *list, int count)
 {
     const polar_group *p = &t->surface.polar;
-    const size_t bytes = (size_t)t->surface.gathered.count * sizeof(double);
-    memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
-    memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
-    memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
-    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
-            queue_move_polarised(q, first + i, --q->count);
-    return q->count - first;
+    const double *sq = reflected ? p->rq : p->tq, *su = reflected ? p->ru : p->tu, *sv = reflected ? p->rv : p->tv;
+    for (int k = 0; k < count; k++)
+        q->sq[first + k] = sq[list[k]], q->su[first + k] = su[list[k]], q->sv[first + k] = sv[list[k]];
 }
 
-/* The compaction of enqueue_children, including footprints, and Stokes vectors if there are any. */
-static int keep_footprints(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
-{
-    footprints_of_children(t, q, first, reflected);
-    if (t->target.frame_plan->render.polarisation) {
-        const polar_group *p = &t->surface.polar;
-        const size_t bytes = (size_t)t->surface.gathered.count * sizeof(double);
-        memcpy(q->sq + first, reflected ? p->rq : p->tq, bytes);
-        memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
-        memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
-    }
-    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least))) {
-            queue_move_polarised(q, first + i, --q->count);
-            q->footprint[first + i] = q->footprint[q->count];
-        }
-    return q->count - first;
-}
-
-/* Enqueues children of one kind: appends all of them at once, then replaces each one that does not exist or has too
- * small a weight by the last one. Returns their number. */
-int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+/* Enqueues children of one kind, except those that do not exist or have too small a weight. Returns their number. */
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, double *weight,
                      const uint64_t *inside)
 {
     ray_queue *q = tracer_queue_at(t, depth);
-    const double least = t->least_weight;
+    const bool reflected = weight == t->surface.branches.reflect,
+               colored = surface_is_layered(t) && t->layered->colored;
     const int first = q->count;
-    t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
-    if (surface_is_layered(t) && t->layered->colored)
-        layered_color_children(t, q, first, weight == t->surface.branches.reflect);
+    int list[ROW];
+    if (t->least_weight > 0.0)
+        cut_faint(t, colored, reflected, weight);
+    const int count = t->grouping->append(&t->surface.gathered, dx, dy, dz, weight, inside, list, q);
+    if (colored)
+        layered_color_children(t, q, first, reflected, list, count);
     if (t->footprints)
-        return keep_footprints(t, q, first, dx == t->surface.branches.rx, weight, least);
+        footprints_of_children(t, q, first, reflected, list, count);
     if (t->target.frame_plan->render.polarisation)
-        return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
-    for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
-            queue_move(q, first + i, --q->count);
-    return q->count - first;
+        polarise_children(t, q, first, reflected, list, count);
+    return count;
 }
 
 void shading_branches_at_facets(tracer *t, bool opaque)

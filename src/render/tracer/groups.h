@@ -2,8 +2,8 @@
  *
  * Rays of a batch that hit one primitive on one region's surface are a group (hit_groups). Groups of one shading class
  * (plan.h) are neighbours in the list, so that they can be shaded as one: in a scene of many solids, small groups would
- * leave most lanes of a vector empty. The rays are gathered into contiguous arrays (group), in which the shading
- * kernels compute light (lit_group) and branches (branch_group).
+ * leave most lanes of a vector empty. A kernel gathers the rays into contiguous arrays (group), in which the shading kernels
+ * compute light (lit_group) and branches (branch_group).
  *
  * Ownership: values; the table of marks belongs to the tracer. Cannot fail. */
 #pragma once
@@ -26,12 +26,6 @@ typedef struct hit_groups {
     int missed, miss[ROW];  /* rays that hit nothing */
 } hit_groups;
 
-/* shading_class: by priority index (plan.h), below the number of priority indices. marks: by primitive; class_marks: by
- * shading class; all are -1 before and after. Classes, and the groups of each class, are in the order of their first
- * rays. */
-void hit_groups_make(const hit_batch *hits, int count, const int *shading_class, int16_t *marks, int16_t *class_marks,
-                     hit_groups *out);
-
 /* Rays that hit the same surface, gathered by index into contiguous arrays. */
 typedef struct group {
     double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW];
@@ -43,7 +37,7 @@ typedef struct group {
     surface_batch points;
     double cr[ROW], cg[ROW], cb[ROW]; /* the material's colour at the point */
     int count;
-    int padded; /* count rounded up to whole vectors; the lanes past count repeat the last ray and are never read */
+    int padded; /* count rounded up to whole vectors of the instruction set; the lanes past count repeat the last ray and are never read */
 } group;
 
 /* Shadow rays to one light: direction, and the radiance that each contributes if unblocked. */
@@ -66,8 +60,24 @@ typedef struct film_light {
     int64_t out_of_range; /* negative if contributions out of the film's range were omitted; otherwise 0 */
 } film_light;
 
-/* Fills g from rays list[0..count-1] of a batch; ascending: whether the list is in ascending order; first: the batch's
- * start in the queue; ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of
- * the processors it was measured on. */
-void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
-                  bool ascending, group *g);
+/* The kernels, one set per instruction set. */
+typedef struct group_kernels {
+    /* Lists the groups of a batch's hits. shading_class: by priority index (plan.h), below the number of priority
+     * indices. marks: by primitive; class_marks: by shading class; all are -1 before and after. Classes, and the groups
+     * of each class, are in the order of their first rays. */
+    void (*list)(const hit_batch *hits, int count, const int *shading_class, int16_t *marks, int16_t *class_marks,
+                 hit_groups *out);
+    /* Fills g from rays list[0 .. count - 1] of a batch; ascending: whether the list is in ascending order; first: the
+     * batch's start in the queue; ior: by priority index. Fastest where neighbours in the list are neighbours in the
+     * batch. */
+    void (*gather)(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
+                   bool ascending, group *g);
+    /* Appends g's lanes of weight other than 0 to q as rays along (dx, dy, dz) with throughput times weight.
+     * Returns their number, and the lanes in `list`, in ascending order. */
+    int (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
+                  const uint64_t *inside, int *list, ray_queue *q);
+    /* Appends shadow rays to a lamp to q, from the points where its light can change the film. */
+    void (*append_shadows)(const group *g, const lit_group *lit, ray_queue *q);
+} group_kernels;
+
+ISA_DECLARE(const group_kernels, group_kernels)

@@ -42,19 +42,3 @@ void queue_destroy(ray_queue *q);
 /* Pops a batch from the end: at most BATCH rays, chosen so that the number of remaining rays is a multiple of the
  * widest vector. The view is valid until rays are added. */
 ray_batch queue_pop(ray_queue *q, int *first);
-
-/* Copies record `from` to record `to`. */
-static inline void queue_move(ray_queue *q, int to, int from)
-{
-    q->ox[to] = q->ox[from], q->oy[to] = q->oy[from], q->oz[to] = q->oz[from];
-    q->dx[to] = q->dx[from], q->dy[to] = q->dy[from], q->dz[to] = q->dz[from];
-    q->wr[to] = q->wr[from], q->wg[to] = q->wg[from], q->wb[to] = q->wb[from];
-    q->start[to] = q->start[from], q->sample_key[to] = q->sample_key[from], q->inside[to] = q->inside[from];
-}
-
-/* Copies a record with its Stokes vector. */
-static inline void queue_move_polarised(ray_queue *q, int to, int from)
-{
-    queue_move(q, to, from);
-    q->sq[to] = q->sq[from], q->su[to] = q->su[from], q->sv[to] = q->sv[from];
-}

@@ -78,6 +78,7 @@ typedef struct tracer_surface {
 
 struct tracer {
     const geometry_kernels *geometry;
+    const group_kernels *grouping;
     const struct shade_kernels *shade;
     const struct sampling_kernels *sampling;
     tracer_target target;
@@ -88,7 +89,7 @@ struct tracer {
     bool by_sample_key; /* the film uses more of the sample key than its pixel */
     tracer_queues queues;
     tracer_account account;
-    int16_t *marks; /* see hit_groups_make */
+    int16_t *marks; /* see group_kernels */
     size_t mark_count;
     /* memory for some scenes; each pointer is NULL until the first such scene */
     struct mesh_work *meshes;          /* with meshes */

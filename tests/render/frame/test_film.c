@@ -103,8 +103,6 @@ static void a_queue_is_last_in_first_out(void **state)
             left = first;
         }
     }
-    queue_move(&q, 3, 200);
-    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.sample_key[3] == 200 && q.wb[3] == -200.0);
     queue_destroy(&q);
 }
 
@@ -112,6 +110,7 @@ static void a_queue_is_last_in_first_out(void **state)
  * contribution's range, with each instruction set and any number of rays. */
 
 static const shade_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(shade_kernels);
+static const group_kernels *const grouping[ISA_COUNT] = ISA_ARRAY(group_kernels);
 static const int counts[] = {1, 2, 3, 7, 8, 9, 31, 32, 33, 63, 64, 100, ROW};
 enum { COUNTS = sizeof counts / sizeof *counts };
 
@@ -276,14 +275,149 @@ static void the_sum_and_variance_of_shares(void **state)
     }
 }
 
+/* --- gathering and sending out --- */
+
+/* Every `gap`th ray is missing: 1 leaves the single one in the middle, ROW none. */
+static int some_of(int count, int gap, int *list)
+{
+    int chosen = 0;
+    for (int i = 0; i < count; i++)
+        if (gap == 1 ? i == count / 2 : i % gap != gap - 1)
+            list[chosen++] = i;
+    return chosen;
+}
+
+static void number_queue(ray_queue *q)
+{
+    for (int i = 0; i < q->capacity; i++) {
+        double *reals[] = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, q->wr, q->wg, q->wb};
+        for (int f = 0; f < 9; f++)
+            reals[f][i] = 1000.0 * f + i;
+        q->start[i] = 9000 + i, q->sample_key[i] = 10000 + i, q->inside[i] = 11000 + (uint64_t)i;
+    }
+}
+
+static void gathered_rays_are_those_of_the_list(void **state)
+{
+    (void)state;
+    static group g;
+    static hit_batch hits;
+    static const double ior[] = {1.0, 1.33, 1.5};
+    const int first = 5;
+    ray_queue q;
+    assert_true(queue_create(&q, first + BATCH));
+    number_queue(&q);
+    for (int i = 0; i < ROW; i++) {
+        hits.t[i] = 0.5 + i, hits.before[i] = i % 3, hits.after[i] = (i + 1) % 3;
+        hits.inside_before[i] = 3 * (uint64_t)i, hits.inside_after[i] = 5 * (uint64_t)i;
+    }
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int count = 1; count <= BATCH; count++)
+            for (int gap = 1; gap <= ROW; gap = gap < 8 ? gap + 1 : gap * 17) {
+                int list[ROW];
+                const int chosen = some_of(count, gap, list);
+                if (chosen == 0)
+                    continue;
+                const bool ascending = count % 4 != 0; /* else two change places */
+                if (!ascending && chosen > 3) {
+                    const int second = list[1];
+                    list[1] = list[chosen - 2], list[chosen - 2] = second;
+                }
+                grouping[level]->gather(&q, first, &hits, ior, list, chosen, ascending, &g);
+                assert_true(g.count == chosen && g.padded >= chosen && g.padded < chosen + LANES_MAX);
+                for (int k = 0; k < g.padded; k++) {
+                    const int i = list[k < chosen ? k : chosen - 1], at = first + i;
+                    const double *rows[] = {g.ox, g.oy, g.oz, g.dx, g.dy, g.dz, g.wr, g.wg, g.wb};
+                    for (int f = 0; f < 9; f++)
+                        assert_true(rows[f][k] == 1000.0 * f + at);
+                    assert_true(g.start[k] == 9000 + at && g.sample_key[k] == 10000 + at && g.t[k] == 0.5 + i);
+                    assert_true(g.inside_before[k] == 3 * (uint64_t)i && g.inside_after[k] == 5 * (uint64_t)i);
+                    assert_true(g.n_from[k] == ior[i % 3] && g.n_to[k] == ior[(i + 1) % 3]);
+                }
+            }
+    queue_destroy(&q);
+}
+
+/* Shadow rays of the listed lanes. */
+static void append_to_lamp(const group_kernels *kernel, const group *g, const int *list, int chosen, ray_queue *q)
+{
+    static lit_group lit;
+    for (int i = 0; i < ROW; i++) {
+        lit.lx[i] = 2000 + i, lit.ly[i] = 2200 + i, lit.lz[i] = 2400 + i;
+        lit.r[i] = 2600 + i, lit.g[i] = 2800 + i, lit.b[i] = 3000 + i, lit.contributes[i] = 0;
+    }
+    for (int k = 0; k < chosen; k++)
+        lit.contributes[list[k]] = -1;
+    q->count = 0;
+    kernel->append_shadows(g, &lit, q);
+    assert_int_equal(q->count, chosen);
+    for (int k = 0; k < chosen; k++) {
+        const int i = list[k];
+        assert_true(q->ox[k] == i && q->oy[k] == 200 + i && q->oz[k] == 400 + i && q->dx[k] == 2000 + i);
+        assert_true(q->dy[k] == 2200 + i && q->dz[k] == 2400 + i && q->start[k] == 600 + i);
+        assert_true(q->sample_key[k] == 1400 + i && q->inside[k] == g->inside_before[i]);
+        assert_true(q->wr[k] == 2600 + i && q->wg[k] == 2800 + i && q->wb[k] == 3000 + i);
+    }
+}
+
+static void appended_rays_are_those_of_the_list(void **state)
+{
+    (void)state;
+    static group g;
+    static branch_group b;
+    static uint64_t inside[ROW];
+    const int waiting = 3;
+    ray_queue q;
+    fill(&g, &b, BATCH);
+    for (int i = 0; i < ROW; i++) {
+        g.points.px[i] = i, g.points.py[i] = 200 + i, g.points.pz[i] = 400 + i, g.points.face[i] = 600 + i;
+        b.rx[i] = 800 + i, b.ry[i] = 1000 + i, b.rz[i] = 1200 + i, g.sample_key[i] = 1400 + i;
+        inside[i] = 1600 + (uint64_t)i, g.inside_before[i] = 1800 + (uint64_t)i;
+    }
+    assert_true(queue_create(&q, waiting + BATCH));
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (int count = 1; count <= BATCH; count++)
+            for (int gap = 1; gap <= ROW; gap = gap < 8 ? gap + 1 : gap * 17) {
+                int list[ROW], kept[ROW];
+                const int chosen = some_of(count, gap, list);
+                for (int i = 0; i < ROW; i++)
+                    b.reflect[i] = -0.0;
+                for (int k = 0; k < chosen; k++)
+                    b.reflect[list[k]] = unit((uint32_t)k, 8);
+                number_queue(&q);
+                q.count = waiting, g.count = count;
+                assert_int_equal(grouping[level]->append(&g, b.rx, b.ry, b.rz, b.reflect, inside, kept, &q), chosen);
+                assert_int_equal(q.count, waiting + chosen);
+                assert_memory_equal(kept, list, (size_t)chosen * sizeof *list);
+                assert_true(q.ox[waiting - 1] == waiting - 1 && q.inside[waiting - 1] == 11000 + waiting - 1);
+                for (int k = 0; k < chosen; k++) {
+                    const int i = list[k], at = waiting + k;
+                    assert_true(q.ox[at] == i && q.oy[at] == 200 + i && q.oz[at] == 400 + i && q.dx[at] == 800 + i);
+                    assert_true(q.dy[at] == 1000 + i && q.dz[at] == 1200 + i && q.start[at] == 600 + i);
+                    assert_true(q.sample_key[at] == 1400 + i && q.inside[at] == 1600 + (uint64_t)i);
+                    assert_true(q.wr[at] == g.wr[i] * b.reflect[i] && q.wg[at] == g.wg[i] * b.reflect[i] &&
+                                q.wb[at] == g.wb[i] * b.reflect[i]);
+                }
+                append_to_lamp(grouping[level], &g, list, chosen, &q);
+            }
+    queue_destroy(&q);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_sum_and_variance_of_shares), cmocka_unit_test(a_new_film_is_black),
-        cmocka_unit_test(sums_are_fixed_point),           cmocka_unit_test(different_films_have_different_hashes),
-        cmocka_unit_test(a_film_becomes_an_image),        cmocka_unit_test(a_queue_is_last_in_first_out),
-        cmocka_unit_test(arrived_light_is_exact),         cmocka_unit_test(rays_without_a_share_add_nothing),
-        cmocka_unit_test(own_and_cut_light_are_products), cmocka_unit_test(light_out_of_range_is_noted),
+        cmocka_unit_test(the_sum_and_variance_of_shares),
+        cmocka_unit_test(a_new_film_is_black),
+        cmocka_unit_test(sums_are_fixed_point),
+        cmocka_unit_test(different_films_have_different_hashes),
+        cmocka_unit_test(a_film_becomes_an_image),
+        cmocka_unit_test(a_queue_is_last_in_first_out),
+        cmocka_unit_test(arrived_light_is_exact),
+        cmocka_unit_test(rays_without_a_share_add_nothing),
+        cmocka_unit_test(own_and_cut_light_are_products),
+        cmocka_unit_test(light_out_of_range_is_noted),
+        cmocka_unit_test(gathered_rays_are_those_of_the_list),
+        cmocka_unit_test(appended_rays_are_those_of_the_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
