@@ -115,13 +115,11 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 
-/* Adds the sky, and the suns in it. */
-static void expose_sky(tracer *t, const ray_queue *q, int first, int i)
+/* Adds the suns in the sky. */
+static void expose_suns(tracer *t, const ray_queue *q, int at)
 {
     const plan *p = t->target.frame_plan;
-    const int at = first + i;
     const vec3 direction = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
-    background_sky(t, q, first, &i, 1);
     if (!p->has_sun || !(q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE))
         return;
     for (int k = 0; k < p->light_count; k++)
@@ -132,17 +130,21 @@ static void expose_sky(tracer *t, const ray_queue *q, int first, int i)
 
 static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
-    int scattered[ROW], scattered_count = 0;
+    int scattered[ROW], scattered_count = 0, sky[ROW], sky_count = 0;
     for (int k = 0; k < count; k++) {
         const int i = list[k];
         const int64_t hit = t->batch.hits.hit_primitive[i];
         if (hit == -1)
-            expose_sky(t, q, first, i);
+            sky[sky_count++] = i;
         else if (hit == PATH_SCATTERED)
             scattered[scattered_count++] = i;
         else
             expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
+    if (sky_count > 0)
+        background_sky(t, q, first, sky, sky_count);
+    for (int k = 0; k < sky_count; k++)
+        expose_suns(t, q, first + sky[k]);
     if (scattered_count > 0)
         path_scatter(t, q, first, scattered, scattered_count);
 }
@@ -233,6 +235,33 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
     path_continue(t, k, depth, &c);
 }
 
+/* Whether a surface's continuations need no more than path_continue_all. */
+static bool is_plain_surface(const tracer *t, const material *m, bool opaque, int depth)
+{
+    const plan *p = t->target.frame_plan;
+    return depth < t->queues.depth_limit && rough_alpha(t) == 0.0 && !surface_is_layered(t) && !t->surface.on_mesh &&
+           !p->render.polarisation && !p->photons && (!opaque || m->reflectivity == 0.0);
+}
+
+static void continue_plain(tracer *t, const material *m, bool opaque, int depth)
+{
+    const path_sampling *draws = &t->target.frame_plan->draws;
+    const group *g = &t->surface.gathered;
+    continuations c;
+    double u[ROW], v[ROW];
+    if (opaque && !(m->diffuse > 0.0))
+        return;
+    t->sampling->draw(draws, g->count, g->sample_key, depth, opaque ? DRAW_DIRECTION : DRAW_BRANCH, u, v);
+    if (opaque) {
+        t->sampling->cosine(g, u, v, c.dx, c.dy, c.dz);
+        t->sampling->leave_matte(g, m->diffuse, &c);
+    } else {
+        shading_branches(t, false);
+        t->sampling->choose_branches(g, &t->surface.branches, u, &c);
+    }
+    path_continue_all(t, depth, &c);
+}
+
 static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
@@ -241,6 +270,10 @@ static void shade(tracer *t, int depth, int priority_index)
     rough_surface rough;
     path_choices chosen;
     path_sample_lights(t, priority_index, depth);
+    if (is_plain_surface(t, m, opaque, depth)) {
+        continue_plain(t, m, opaque, depth);
+        return;
+    }
     if (alpha > 0.0)
         path_rough_begin(t, alpha, opaque, depth, &rough);
     else

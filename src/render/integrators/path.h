@@ -1,6 +1,7 @@
 /* The parts of path tracing (path.c). Functions of the tracer's gathered group; nothing fails. */
 #pragma once
 
+#include "render/shade/kernels.h"
 #include "render/shade/light_sampling.h"
 #include "render/shade/rough.h"
 #include "render/tracer/tracer.h"
@@ -17,6 +18,8 @@ typedef struct continuation {
     bool specular_bounce; /* a lamp that the next ray hits counts: no shadow ray sampled it */
 } continuation;
 
+/* Enqueues the continuations of a smooth surface in a frame without photons and polarisation, below the depth limit. */
+void path_continue_all(tracer *t, int depth, continuations *c);
 /* Enqueues the continuation of ray k, unless it ends by Russian roulette or at the depth limit. */
 void path_continue(tracer *t, int k, int depth, continuation *c);
 

@@ -2,6 +2,7 @@
  * roulette or the depth limit ends them. */
 #include "render/integrators/path.h"
 
+#include "base/lanes.h"
 #include "render/shade/exposure.h"
 #include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
@@ -169,13 +170,17 @@ void path_sample_lights(tracer *t, int priority_index, int depth)
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
 
+static bool has_roulette(const tracer *t, int depth)
+{
+    return depth >= (t->target.frame_plan->render.roulette ? ROULETTE_DEPTH : DEPTH_DEEP);
+}
+
 /* Russian roulette (Arvo and Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990): ends a faint path at
  * random; the survivors carry its weight. Deep paths are included whatever render.roulette is. */
 static bool survives(const tracer *t, int k, int depth, vec3 *factor)
 {
-    const render_settings *r = &t->target.frame_plan->render;
     const group *g = &t->surface.gathered;
-    if (depth < (r->roulette ? ROULETTE_DEPTH : DEPTH_DEEP))
+    if (!has_roulette(t, depth))
         return true;
     const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
     /* relative to the weight of a camera ray, which an analyser halves */
@@ -223,4 +228,24 @@ void path_continue(tracer *t, int k, int depth, continuation *c)
         cut(t, k, c);
     else if (survives(t, k, depth, &c->factor))
         enqueue_continuation(t, k, depth, c);
+}
+
+void path_continue_all(tracer *t, int depth, continuations *c)
+{
+    const group *g = &t->surface.gathered;
+    for (int k = 0; has_roulette(t, depth) && k < g->count; k++) {
+        vec3 factor = vec3_make(c->r[k], c->g[k], c->b[k]);
+        c->exists[k] &= mask_of(survives(t, k, depth, &factor));
+        c->r[k] = factor.x, c->g[k] = factor.y, c->b[k] = factor.z;
+    }
+    int64_t refracted = 0;
+    for (int k = 0; k < g->count; k++) {
+        c->r[k] *= g->wr[k], c->g[k] *= g->wg[k], c->b[k] *= g->wb[k];
+        refracted -= c->refracted[k] & c->exists[k];
+    }
+    const new_rays rays = {c->dx, c->dy, c->dz, c->r, c->g, c->b, NULL, c->inside, c->sample_key, c->exists};
+    int list[ROW];
+    const int count = t->grouping->append(g, &rays, list, tracer_queue_at(t, depth + 1));
+    COUNT(t->account.counters.refract += (uint64_t)refracted);
+    COUNT(t->account.counters.reflect += (uint64_t)(count - refracted));
 }

@@ -4,30 +4,35 @@
 #include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
+/* The place of a sample key's pixel and replicate in the film. */
+static inline int64_t place_of(const tracer *t, int64_t sample_key)
+{
+    const film *f = t->target.img;
+    const int64_t replicate = f->replicates == 1 ? 0 : path_replicate(&t->target.frame_plan->draws, sample_key);
+    return film_pixel_index(f, sample_key_pixel(sample_key)) + replicate * f->width * f->height;
+}
+
 __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
     const plan *p = t->target.frame_plan;
-    const film *f = t->target.img;
-    const int64_t replicate = f->replicates == 1 ? 0 : path_replicate(&p->draws, sample_key);
-    const int64_t place = film_pixel_index(f, sample_key_pixel(sample_key)) + replicate * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
     }
-    expose_at(t, place, r, g, b);
+    expose_at(t, place_of(t, sample_key), r, g, b);
 }
 
-void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel)
+void expose_all(tracer *t, const film_light *sent, int count, const int64_t *sample_key)
 {
     const film *f = t->target.img;
     film_sum *sums = f->sum;
     int64_t overflow = sent->out_of_range;
-    if (f->image_width == 0)
+    if (f->image_width == 0 && !t->by_sample_key)
         for (int i = 0; i < count; i++)
-            overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
+            overflow |= add_units(&sums[sample_key[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
     else
         for (int i = 0; i < count; i++)
-            overflow |= add_units(&sums[film_pixel_index(f, pixel[i]) * 3], sent->r[i], sent->g[i], sent->b[i]);
+            overflow |= add_units(&sums[place_of(t, sample_key[i]) * 3], sent->r[i], sent->g[i], sent->b[i]);
     t->account.overflow |= overflow;
 }
 
@@ -84,7 +89,7 @@ static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, dou
 
 void shading_expose_shadow_rays(tracer *t, const ray_queue *q, int first, int count, const double *fraction)
 {
-    if (!t->by_sample_key) {
+    if (!t->target.frame_plan->spectral) {
         film_light sent;
         t->shade->arrived(count, fraction, q->wr + first, q->wg + first, q->wb + first, &sent);
         expose_all(t, &sent, count, q->sample_key + first);
@@ -127,10 +132,27 @@ void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction
 
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
+    const plan *p = t->target.frame_plan;
+    const bool one_by_one = p->spectral || p->basic || !t->by_sample_key, /* the last is faster so */
+        uniform = p->sky->kind == BACKGROUND_UNIFORM;
+    double whole[ROW], r[ROW], g[ROW], b[ROW];
+    int64_t sample_key[ROW];
+    film_light sent;
     for (int k = 0; k < count; k++) {
         const int at = first + list[k];
-        expose_sky(t, q->sample_key[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at], q->wb[at]);
+        const vec3 direction = vec3_make(q->dx[at], q->dy[at], q->dz[at]);
+        if (one_by_one) {
+            expose_sky(t, q->sample_key[at], direction, q->wr[at], q->wg[at], q->wb[at]);
+            continue;
+        }
+        const vec3 l = uniform ? p->sky->color : sky_and_rain(p, direction);
+        r[k] = q->wr[at] * l.x, g[k] = q->wg[at] * l.y, b[k] = q->wb[at] * l.z;
+        whole[k] = 1.0, sample_key[k] = q->sample_key[at];
     }
+    if (one_by_one)
+        return;
+    t->shade->arrived(count, whole, r, g, b, &sent);
+    expose_all(t, &sent, count, sample_key);
 }
 
 /* --- branches that the depth limit cuts off --- */
@@ -185,7 +207,7 @@ void cut_branches(tracer *t)
         return;
     const bool uniform =
         p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == DEPTH_LIMIT_MEAN; /* then directions do not matter */
-    if (uniform && !t->by_sample_key) {
+    if (uniform && !p->spectral && !p->basic) {
         film_light sent;
         t->shade->cut_light(g, b, p->render.beyond == DEPTH_LIMIT_MEAN ? p->sky_mean : p->sky->color, &sent);
         expose_all(t, &sent, g->count, g->sample_key);

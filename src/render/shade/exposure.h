@@ -36,8 +36,8 @@ static inline void shading_expose(tracer *t, int64_t sample_key, double r, doubl
         expose_at(t, film_pixel_index(t->target.img, sample_key), r, g, b);
 }
 
-/* Adds the light of many rays, whose sample keys are pixels. */
-void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel);
+/* Adds the light of many rays to their pixels; not for spectral films. */
+void expose_all(tracer *t, const film_light *sent, int count, const int64_t *sample_key);
 
 /* Adds the radiance of rays first .. first + count - 1 of a queue; fraction: the fraction of each that arrives. */
 void shading_expose_shadow_rays(tracer *t, const ray_queue *q, int first, int count, const double *fraction);

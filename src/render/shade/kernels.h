@@ -68,6 +68,13 @@ typedef struct sphere_samples {
     double dx[ROW], dy[ROW], dz[ROW], cap[ROW], reach[ROW], n_l[ROW];
 } sphere_samples;
 
+/* Continuations of a group's paths, by lane. */
+typedef struct continuations {
+    double dx[ROW], dy[ROW], dz[ROW], r[ROW], g[ROW], b[ROW]; /* r, g, b: factors of the throughput */
+    uint64_t inside[ROW];
+    int64_t sample_key[ROW], exists[ROW], refracted[ROW]; /* the last two are masks */
+} continuations;
+
 /* The lights' parameters as arrays, padded to full blocks with lights of strength 0. */
 enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BLOCK * LAMP_BLOCK };
 typedef struct lamp_table {
@@ -94,6 +101,11 @@ typedef struct sampling_kernels {
     /* Unit directions about the normals of g's points by the cosine law. */
     void (*cosine)(const group *g, const double *u, const double *v, double *dx, double *dy, double *dz);
     void (*spheres)(const group *g, sphere_samples *s);
+    /* --- continuations of paths that meet no photons --- */
+    /* At a clear surface one of two branches by a random number in (0, 1), with the sum of their weights. */
+    void (*choose_branches)(const group *g, const branch_group *b, const double *chance, continuations *c);
+    /* From a matte surface, with directions that are in c. */
+    void (*leave_matte)(const group *g, double diffuse, continuations *c);
     /* Sets near[i] to -1 if ray i passes within the radius of a centre, or just misses, else to 0; returns whether any
      * is -1. */
     bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);

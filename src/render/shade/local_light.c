@@ -27,15 +27,9 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         return;
     }
     const vec3 a = vec3_add(vec3_scale(p->sky->ambient, k_a), vec3_make(k_e, k_e, k_e));
-    if (!t->by_sample_key) {
-        film_light sent;
-        t->shade->own_light(g, a, &sent);
-        expose_all(t, &sent, g->count, g->sample_key);
-        return;
-    }
-    for (int i = 0; i < g->count; i++)
-        shading_expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i],
-                       g->wb[i] * a.z * g->cb[i]);
+    film_light sent;
+    t->shade->own_light(g, a, &sent);
+    expose_all(t, &sent, g->count, g->sample_key);
 }
 
 /* The fraction of diffuse light at ray i's point that reaches the film, including the surface's colour, as a mean over
@@ -71,8 +65,13 @@ static void caustic_light(tracer *t, const material *m)
 static void enqueue_shadow_rays(tracer *t, int lamp)
 {
     ray_queue *q = &t->queues.shadows;
+    const group *g = &t->surface.gathered;
+    const lit_group *l = &t->surface.lit;
+    const new_rays rays = {l->lx,         l->ly,         l->lz, l->r, l->g, l->b, NULL, g->inside_before,
+                           g->sample_key, l->contributes};
     const int first = q->count;
-    t->grouping->append_shadows(&t->surface.gathered, &t->surface.lit, q);
+    int list[ROW];
+    t->grouping->append(g, &rays, list, q);
     for (int at = first; t->target.frame_plan->sheets && at < q->count; at++)
         sheets_shadow_ray(t, lamp, at);
 }

@@ -154,6 +154,41 @@ static void spheres(const group *g, sphere_samples *restrict s)
     }
 }
 
+static void choose_branches(const group *g, const branch_group *b, const double *chance, continuations *restrict c)
+{
+    const int count = g->count;
+    /* VECTORISE */
+    INDEPENDENT_LANES
+    for (int i = 0; i < count; i++) {
+        const double both = b->reflect[i] + b->refract[i];
+        const int64_t refracted = mask_less_equal(b->reflect[i], chance[i] * both) & mask_less(0.0, b->refract[i]);
+        c->dx[i] = blend(refracted, b->tx[i], b->rx[i]);
+        c->dy[i] = blend(refracted, b->ty[i], b->ry[i]);
+        c->dz[i] = blend(refracted, b->tz[i], b->rz[i]);
+        c->r[i] = c->g[i] = c->b[i] = both;
+        c->inside[i] = (uint64_t)blend_int(refracted, (int64_t)g->inside_after[i], (int64_t)g->inside_before[i]);
+        c->sample_key[i] = g->sample_key[i] | SAMPLE_KEY_SPECULAR_BOUNCE;
+        c->exists[i] = mask_less(0.0, both);
+        c->refracted[i] = refracted;
+    }
+}
+
+static void leave_matte(const group *g, double diffuse, continuations *restrict c)
+{
+    const int count = g->count;
+    /* VECTORISE */
+    INDEPENDENT_LANES
+    for (int i = 0; i < count; i++) {
+        c->r[i] = g->cr[i] * diffuse;
+        c->g[i] = g->cg[i] * diffuse;
+        c->b[i] = g->cb[i] * diffuse;
+        c->inside[i] = g->inside_before[i];
+        c->sample_key[i] = g->sample_key[i] & ~SAMPLE_KEY_SPECULAR_BOUNCE;
+        c->exists[i] = mask_less(0.0, diffuse * greater(g->cr[i], greater(g->cg[i], g->cb[i])));
+        c->refracted[i] = 0;
+    }
+}
+
 /* The margin covers the rounding of the difference. */
 static bool near_sphere(const ray_batch *rays, vec3 centre, double radius, int64_t *restrict near)
 {
@@ -192,5 +227,6 @@ static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, 
     }
 }
 
-const sampling_kernels KERNEL(sampling_kernels) = {draw_each, camera_directions, camera_rays,  cosine,
-                                                   spheres,   near_sphere,       light_weights};
+const sampling_kernels KERNEL(sampling_kernels) = {draw_each,   camera_directions, camera_rays,
+                                                   cosine,      spheres,           choose_branches,
+                                                   leave_matte, near_sphere,       light_weights};

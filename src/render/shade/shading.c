@@ -368,7 +368,9 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
     int list[ROW];
     if (t->least_weight > 0.0)
         cut_faint(t, colored, reflected, weight);
-    const int count = t->grouping->append(&t->surface.gathered, dx, dy, dz, weight, inside, list, q);
+    const group *g = &t->surface.gathered;
+    const new_rays children = {dx, dy, dz, g->wr, g->wg, g->wb, weight, inside, g->sample_key, NULL};
+    const int count = t->grouping->append(g, &children, list, q);
     if (colored)
         layered_color_children(t, q, first, reflected, list, count);
     if (t->footprints)

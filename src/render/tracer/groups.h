@@ -60,6 +60,15 @@ typedef struct film_light {
     int64_t out_of_range; /* negative if contributions out of the film's range were omitted; otherwise 0 */
 } film_light;
 
+/* Rays from a group's points, by lane. */
+typedef struct new_rays {
+    const double *dx, *dy, *dz, *r, *g, *b;
+    const double *weight; /* of r, g, b; NULL: 1 */
+    const uint64_t *inside;
+    const int64_t *sample_key;
+    const int64_t *exists; /* masks; NULL: rays of weight 0 do not exist */
+} new_rays;
+
 /* The kernels, one set per instruction set. */
 typedef struct group_kernels {
     /* Lists the groups of a batch's hits. shading_class: by priority index (plan.h), below the number of priority
@@ -72,12 +81,8 @@ typedef struct group_kernels {
      * batch. */
     void (*gather)(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
                    bool ascending, group *g);
-    /* Appends g's lanes of weight other than 0 to q as rays along (dx, dy, dz) with throughput times weight.
-     * Returns their number, and the lanes in `list`, in ascending order. */
-    int (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
-                  const uint64_t *inside, int *list, ray_queue *q);
-    /* Appends shadow rays to a lamp to q, from the points where its light can change the film. */
-    void (*append_shadows)(const group *g, const lit_group *lit, ray_queue *q);
+    /* Appends the rays that exist to q. Returns their number, and their lanes in `list`, in ascending order. */
+    int (*append)(const group *g, const new_rays *n, int *list, ray_queue *q);
 } group_kernels;
 
 ISA_DECLARE(const group_kernels, group_kernels)

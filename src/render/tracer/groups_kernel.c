@@ -195,21 +195,14 @@ static void gather(const ray_queue *queue, int first, const hit_batch *hits, con
         pad_group(g);
 }
 
-/* Rays from a group's points, by lane. */
-typedef struct new_rays {
-    const double *dx, *dy, *dz, *r, *g, *b;
-    const double *weight; /* of r, g, b; NULL: 1 */
-    const uint64_t *inside;
-} new_rays;
-
-ALWAYS_INLINE void append_four(const group *g, const new_rays *n, int i, ray_queue *q, int at)
+ALWAYS_INLINE void append_four(const group *g, const new_rays *n, bool weighted, int i, ray_queue *q, int at)
 {
     const surface_batch *p = &g->points;
     copy_four(q->ox + at, p->px + i), copy_four(q->oy + at, p->py + i), copy_four(q->oz + at, p->pz + i);
     copy_four(q->dx + at, n->dx + i), copy_four(q->dy + at, n->dy + i), copy_four(q->dz + at, n->dz + i);
-    copy_four(q->start + at, p->face + i), copy_four(q->sample_key + at, g->sample_key + i);
+    copy_four(q->start + at, p->face + i), copy_four(q->sample_key + at, n->sample_key + i);
     copy_four(q->inside + at, n->inside + i);
-    if (!n->weight) {
+    if (!weighted) {
         copy_four(q->wr + at, n->r + i), copy_four(q->wg + at, n->g + i), copy_four(q->wb + at, n->b + i);
         return;
     }
@@ -222,12 +215,9 @@ ALWAYS_INLINE void append_four(const group *g, const new_rays *n, int i, ray_que
     copy_four(q->wr + at, r), copy_four(q->wg + at, gr), copy_four(q->wb + at, b);
 }
 
-/* Appends the lanes whose mask is not 0, in runs of neighbours, and lists them in ascending order; returns their
- * number. */
-ALWAYS_INLINE int append_some(const group *g, const new_rays *n, const int64_t *mask, int *list, ray_queue *queue)
+/* Lists the lanes whose mask is not 0; returns their number. */
+ALWAYS_INLINE int list_lanes(const int64_t *mask, int lanes, int *restrict list)
 {
-    const int lanes = g->count;
-    ray_queue q = *queue;
     int64_t all = -1;
     int count = 0;
     /* VECTORISE */
@@ -241,32 +231,38 @@ ALWAYS_INLINE int append_some(const group *g, const new_rays *n, const int64_t *
             list[count] = i;
             count -= (int)mask[i];
         }
-    for (int k = 0, run; k < count; k += run) {
-        run = run_length(list + k, count - k, true);
-        for (int done = 0; done < run; done += COPIED)
-            append_four(g, n, list[k] + done, &q, q.count + k + done);
-    }
-    queue->count += count;
     return count;
 }
 
-static int append(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
-                  const uint64_t *inside, int *restrict list, ray_queue *q)
+/* In runs of neighbours. */
+ALWAYS_INLINE void append_listed(const group *g, const new_rays *rays, bool weighted, const int *list, int count,
+                                 const ray_queue *queue)
 {
-    const new_rays children = {dx, dy, dz, g->wr, g->wg, g->wb, weight, inside};
+    ray_queue q = *queue;
+    const new_rays n = *rays;
+    for (int k = 0, run; k < count; k += run) {
+        run = run_length(list + k, count - k, true);
+        for (int done = 0; done < run; done += COPIED)
+            append_four(g, &n, weighted, list[k] + done, &q, q.count + k + done);
+    }
+}
+
+static int append(const group *g, const new_rays *n, int *restrict list, ray_queue *q)
+{
     const int lanes = g->count;
+    const double *weight = n->weight;
     int64_t exists[ROW];
-    /* VECTORISE */
-    for (int i = 0; i < lanes; i++)
-        exists[i] = -(int64_t)(weight[i] != 0.0);
-    return append_some(g, &children, exists, list, q);
+    if (!n->exists)
+        /* VECTORISE */
+        for (int i = 0; i < lanes; i++)
+            exists[i] = -(int64_t)(weight[i] != 0.0);
+    const int count = list_lanes(n->exists ? n->exists : exists, lanes, list);
+    if (n->weight)
+        append_listed(g, n, true, list, count, q);
+    else
+        append_listed(g, n, false, list, count, q);
+    q->count += count;
+    return count;
 }
 
-static void append_shadows(const group *g, const lit_group *lit, ray_queue *q)
-{
-    const new_rays rays = {lit->lx, lit->ly, lit->lz, lit->r, lit->g, lit->b, NULL, g->inside_before};
-    int list[ROW];
-    append_some(g, &rays, lit->contributes, list, q);
-}
-
-const group_kernels KERNEL(group_kernels) = {list_groups, gather, append, append_shadows};
+const group_kernels KERNEL(group_kernels) = {list_groups, gather, append};

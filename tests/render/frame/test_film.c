@@ -349,7 +349,10 @@ static void append_to_lamp(const group_kernels *kernel, const group *g, const in
     for (int k = 0; k < chosen; k++)
         lit.contributes[list[k]] = -1;
     q->count = 0;
-    kernel->append_shadows(g, &lit, q);
+    const new_rays n = {lit.lx, lit.ly, lit.lz,           lit.r,         lit.g,
+                        lit.b,  NULL,   g->inside_before, g->sample_key, lit.contributes};
+    int kept[ROW];
+    assert_int_equal(kernel->append(g, &n, kept, q), chosen);
     assert_int_equal(q->count, chosen);
     for (int k = 0; k < chosen; k++) {
         const int i = list[k];
@@ -386,7 +389,8 @@ static void appended_rays_are_those_of_the_list(void **state)
                     b.reflect[list[k]] = unit((uint32_t)k, 8);
                 number_queue(&q);
                 q.count = waiting, g.count = count;
-                assert_int_equal(grouping[level]->append(&g, b.rx, b.ry, b.rz, b.reflect, inside, kept, &q), chosen);
+                const new_rays n = {b.rx, b.ry, b.rz, g.wr, g.wg, g.wb, b.reflect, inside, g.sample_key, NULL};
+                assert_int_equal(grouping[level]->append(&g, &n, kept, &q), chosen);
                 assert_int_equal(q.count, waiting + chosen);
                 assert_memory_equal(kept, list, (size_t)chosen * sizeof *list);
                 assert_true(q.ox[waiting - 1] == waiting - 1 && q.inside[waiting - 1] == 11000 + waiting - 1);

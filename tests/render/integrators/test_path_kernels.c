@@ -211,6 +211,48 @@ static void rays_near_a_sphere_are_found(void **state)
         }
 }
 
+/* A clear surface sends a path where a random number falls among the two weights, a matte one along its directions. */
+static void continuations_are_those_of_single_paths(void **state)
+{
+    (void)state;
+    static group g;
+    static branch_group b;
+    static continuations c;
+    double chance[ROW];
+    fill_group(&g, 1);
+    for (uint32_t i = 0; i < ROW; i++) {
+        b.rx[i] = i, b.ry[i] = i + 200, b.rz[i] = i + 400, b.tx[i] = i + 600, b.ty[i] = i + 800, b.tz[i] = i + 1000;
+        b.reflect[i] = i % 5 == 0 ? 0.0 : unit(i, 20), b.refract[i] = i % 7 == 0 ? 0.0 : unit(i, 21);
+        chance[i] = i % 11 == 0 ? b.reflect[i] / (b.reflect[i] + b.refract[i]) : unit(i, 22);
+        g.inside_before[i] = i, g.inside_after[i] = i + 200;
+        g.sample_key[i] = i | (i % 2 ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
+        g.cr[i] = i % 3 ? 0.0 : unit(i, 23), g.cg[i] = i % 4 ? 0.0 : unit(i, 24), g.cb[i] = i % 5 ? 0.0 : unit(i, 25);
+    }
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
+        for (g.count = 1; g.count <= BATCH; g.count++) {
+            kernels[level]->choose_branches(&g, &b, chance, &c);
+            for (int i = 0; i < g.count; i++) {
+                const double both = b.reflect[i] + b.refract[i];
+                const bool refracted = chance[i] * both >= b.reflect[i] && b.refract[i] > 0.0;
+                assert_int_equal(c.exists[i], both > 0.0 ? -1 : 0);
+                if (!(both > 0.0))
+                    continue;
+                assert_int_equal(c.refracted[i], refracted ? -1 : 0);
+                assert_true(c.dx[i] == i + (refracted ? 600 : 0) && c.dy[i] == i + (refracted ? 800 : 200) &&
+                            c.dz[i] == i + (refracted ? 1000 : 400));
+                assert_true(c.r[i] == both && c.g[i] == both && c.b[i] == both);
+                assert_true(c.inside[i] == (uint64_t)i + (refracted ? 200 : 0));
+                assert_true(c.sample_key[i] == (i | SAMPLE_KEY_SPECULAR_BOUNCE));
+            }
+            kernels[level]->leave_matte(&g, 0.7, &c);
+            for (int i = 0; i < g.count; i++) {
+                assert_int_equal(c.exists[i], g.cr[i] > 0.0 || g.cg[i] > 0.0 || g.cb[i] > 0.0 ? -1 : 0);
+                assert_true(c.r[i] == g.cr[i] * 0.7 && c.g[i] == g.cg[i] * 0.7 && c.b[i] == g.cb[i] * 0.7);
+                assert_true(c.inside[i] == (uint64_t)i && c.sample_key[i] == i && c.refracted[i] == 0);
+            }
+        }
+}
+
 /* The radiance of a point on a plane from a lamp, in double precision: k_d cos + k_s, with and without falloff. */
 static void weights_follow_the_law_of_distance(void **state)
 {
@@ -360,6 +402,7 @@ int main(void)
         cmocka_unit_test(directions_have_their_angles),
         cmocka_unit_test(samples_are_on_their_spheres),
         cmocka_unit_test(rays_near_a_sphere_are_found),
+        cmocka_unit_test(continuations_are_those_of_single_paths),
         cmocka_unit_test(weights_follow_the_law_of_distance),
         cmocka_unit_test(films_are_bit_identical_on_all_instruction_sets),
         cmocka_unit_test(films_are_bit_identical_for_threads_schedules_and_tiles),
