@@ -101,6 +101,10 @@ typedef struct sampling_kernels {
     /* Unit directions about the normals of g's points by the cosine law. */
     void (*cosine)(const group *g, const double *u, const double *v, double *dx, double *dy, double *dz);
     void (*spheres)(const group *g, sphere_samples *s);
+    /* The light of one sphere that is equally bright from all sides, from the points of s: k_d is the diffuse
+     * reflectance, shine the highlight. contributes: where the sphere is above the horizon. */
+    void (*sphere_light)(const group *g, const sphere_samples *s, double radiance, vec3 color, double k_d,
+                         const double *shine, lit_group *lit);
     /* --- continuations of paths that meet no photons --- */
     /* At a clear surface one of two branches by a random number in (0, 1), with the sum of their weights. */
     void (*choose_branches)(const group *g, const branch_group *b, const double *chance, continuations *c);

@@ -163,6 +163,32 @@ void area_lights_sample(tracer *t, const material *m, bool shines, lamp_samples 
             enqueue_flat(t, k, m, shines, l);
 }
 
+/* Enqueues shadow rays from all records to their sample points on a sphere that is equally bright from all sides. */
+static void sample_sphere(tracer *t, const material *m, bool shines, int lamp, lamp_samples *all)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    const sphere_samples *s = &all->spheres;
+    lit_group *l = &t->surface.lit;
+    ray_queue *q = &t->queues.shadows;
+    const int first = q->count;
+    double shine[ROW];
+    int list[ROW];
+    area_lights_aim_at_spheres(t, all);
+    for (int k = 0; k < g->count; k++)
+        shine[k] =
+            shines && s->n_l[k] > 0.0 ? highlight_of(g, k, m, vec3_make(s->dx[k], s->dy[k], s->dz[k]), s->n_l[k]) : 0.0;
+    t->sampling->sphere_light(g, s, area_light_radiance(p, lamp, vec3_make(0.0, 0.0, 1.0)),
+                              vec3_scale(p->lights[lamp].color, p->lights[lamp].intensity), m->diffuse, shine, l);
+    for (int k = 0; t->surface.on_mesh && k < g->count; k++)
+        l->contributes[k] &= -(int64_t)mesh_lets_out(t, k, vec3_make(s->dx[k], s->dy[k], s->dz[k]));
+    const new_rays rays = {l->lx,         l->ly,         l->lz, l->r, l->g, l->b, NULL, g->inside_before,
+                           g->sample_key, l->contributes};
+    t->grouping->append(g, &rays, list, q);
+    for (int at = first; p->sheets && at < q->count; at++)
+        sheets_shadow_ray(t, lamp, at);
+}
+
 void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth)
 {
     const plan *p = t->target.frame_plan;
@@ -174,7 +200,10 @@ void area_lights_sample_all(tracer *t, const material *m, bool shines, int depth
         for (int k = 0; k < g->count; k++)
             all.lamp[k] = lamp, all.weight[k] = 1.0;
         t->sampling->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, all.spheres.u, all.spheres.v);
-        area_lights_sample(t, m, shines, &all);
+        if (is_sphere(p, lamp) && !light_has_cone(&p->lights[lamp]) && !p->spectral)
+            sample_sphere(t, m, shines, lamp, &all);
+        else
+            area_lights_sample(t, m, shines, &all);
     }
 }
 

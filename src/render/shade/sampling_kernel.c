@@ -154,6 +154,25 @@ static void spheres(const group *g, sphere_samples *restrict s)
     }
 }
 
+/* (k_d C / pi) L (N.L) over the density 1 / (2 pi cap), plus Phong's highlight from the same light. */
+static void sphere_light(const group *g, const sphere_samples *s, double radiance, vec3 color, double k_d,
+                         const double *shine, lit_group *restrict lit)
+{
+    const int count = g->count;
+    /* VECTORISE */
+    INDEPENDENT_LANES
+    for (int i = 0; i < count; i++) {
+        const double seen = 2.0 * s->cap[i] * radiance, diffuse = k_d * s->n_l[i];
+        lit->lx[i] = s->dx[i] * s->reach[i];
+        lit->ly[i] = s->dy[i] * s->reach[i];
+        lit->lz[i] = s->dz[i] * s->reach[i];
+        lit->r[i] = g->wr[i] * (color.x * seen) * (diffuse * g->cr[i] + shine[i]);
+        lit->g[i] = g->wg[i] * (color.y * seen) * (diffuse * g->cg[i] + shine[i]);
+        lit->b[i] = g->wb[i] * (color.z * seen) * (diffuse * g->cb[i] + shine[i]);
+        lit->contributes[i] = mask_less(0.0, s->n_l[i]);
+    }
+}
+
 static void choose_branches(const group *g, const branch_group *b, const double *chance, continuations *restrict c)
 {
     const int count = g->count;
@@ -227,6 +246,6 @@ static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, 
     }
 }
 
-const sampling_kernels KERNEL(sampling_kernels) = {draw_each,   camera_directions, camera_rays,
-                                                   cosine,      spheres,           choose_branches,
-                                                   leave_matte, near_sphere,       light_weights};
+const sampling_kernels KERNEL(sampling_kernels) = {draw_each,   camera_directions, camera_rays,     cosine,
+                                                   spheres,     sphere_light,      choose_branches, leave_matte,
+                                                   near_sphere, light_weights};
