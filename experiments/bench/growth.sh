@@ -2,13 +2,15 @@
 # growth: the table of plots/growth*.gp: time and memory by solids, lights, triangles, pixels, depth (8 minutes)
 # What no study can sweep: solids and lights, and the memory of fresh processes (in a study, a process has the memory of
 # earlier cells as well). SIZE=400x300, SOLIDS="1 3 10 ... 1000000", LIGHTS="1 4 ... 1000" (among 64 solids),
-# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 16384x12288", DEPTHS="0 ... 14".
+# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 16384x12288", DEPTHS="0 ... 14" (of the tree of rays), LEVELS="0 1 ...
+# 64" (the depth of random paths).
 # Scenes: random_scene.awk with seed 1, soup.yaml, rod.yaml; one thread; depth 4, triangles 0; paths: 4 a pixel. A round
 # renders every scene once. Times are CPU times of tracing, without reading the scene and building its hierarchy.
 size=${SIZE:-400x300}
 solids=${SOLIDS:-1 3 10 30 64 100 300 1000 3000 10000 30000 100000 300000 1000000}
 lights=${LIGHTS:-1 4 16 64 256 1000}
 triangles=${TRIANGLES:-1000 10000 100000 1000000 10000000} depths=${DEPTHS:-0 2 4 6 8 10 12 14}
+levels=${LEVELS:-0 1 2 4 8 16 32 64}
 sizes=${SIZES:-100x75 200x150 400x300 800x600 1600x1200 3200x2400 6400x4800 16384x12288}
 
 runs=()
@@ -27,6 +29,9 @@ prepare() {
     done
     for s in $sizes; do add pixels $((${s%x*} * ${s#*x})) "$here/scenes/rod.yaml" "$s"; done
     for n in $depths; do add depth "$n" "$here/scenes/rod.yaml" "$size" render.depth="$n"; done
+    for n in $levels; do
+        add depth-path "$n" "$here/scenes/rod.yaml" "$size" render.integrator=path render.paths=4 render.depth="$n"
+    done
 }
 round() {
     local run series n scene frame sets row value

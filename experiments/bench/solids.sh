@@ -1,9 +1,11 @@
 # shellcheck shell=bash
 # solids: rays a second among 64, 1000 and 100 000 spheres, and of the rod in its vessel; ten random scenes of each
-# SIZE=800x600, SEED=101 (of the first random scene), SCENES=10, COUNTS="64 1000 100000". On one thread. A random rod
-# has another camera, liquid and rod than rod.yaml. "worst" is the scene with the lowest rate or the highest ratio; a
+# SIZE=800x600, SEED=101 (of the first random scene), SCENES=10, COUNTS="64 1000 100000", STEPS="12 16 ... 80" (numbers
+# of spheres around the change from the list of solids to the tree). On one thread. A random rod has another camera,
+# liquid and rod than rod.yaml. "worst" is the scene with the lowest rate or the highest ratio; a
 # scene's value is the median of its rounds.
 size=${SIZE:-800x600} seed=${SEED:-101} scenes=${SCENES:-10} counts=${COUNTS:-64 1000 100000}
+steps=${STEPS:-12 16 24 32 48 64 65 80}
 seeds=$(seq "$seed" $((seed + scenes - 1)))
 
 random_rod() { # random_rod SEED: parameters, one a line
@@ -27,6 +29,7 @@ random_rod() { # random_rod SEED: parameters, one a line
 frame() { traced "$1" cpu_s "$ours" "$2" --set render.threads=1 "${@:3}"; }
 round() {
     local s n set sets
+    for n in $steps; do frame "step $n" "$(spheres 1 "$n" 1)"; done
     for s in 1 $seeds; do
         sets=(--set render.depth=8)
         ((s == 1)) || while read -r set; do sets+=(--set "$set"); done < <(random_rod "$s")
@@ -40,6 +43,7 @@ report() {
     each() { for s in $seeds; do "$@"; done; } # each COMMAND...: the command once a random scene, $s its seed
     rates() { row "$1 $s" "$rate" "$1"; }
     times() { ratio "spheres $1 $s" "spheres $first $s" "$1" "$ray"; }
+    for n in $steps; do row "step $n" '1e9 * $1 / $2' "$n spheres: ns a ray"; done
     row 'rod 1' "$rate" 'rod, depth 8: M rays/s'
     each rates rod | random_scenes low
     for n in $counts; do
