@@ -49,7 +49,7 @@ static void run_rays(tracer *t, int depth)
     }
     hit_groups *groups = &t->batch.groups;
     t->grouping->list(&t->batch.hits, rays.count, p->shading_class, t->marks, t->marks + p->geometry->primitive_count,
-                    groups);
+                      groups);
     if (groups->missed > 0)
         t->frame_integrator->background(t, q, first, groups->miss, groups->missed);
     /* Passes runs of groups of one class to shading_groups, which decides which of them can be combined. */
