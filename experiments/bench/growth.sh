@@ -2,7 +2,7 @@
 # growth: the table of plots/growth*.gp: time and memory by solids, lights, triangles, pixels, depth (8 minutes)
 # What no study can sweep: solids and lights, and the memory of fresh processes (in a study, a process has the memory of
 # earlier cells as well). SIZE=400x300, SOLIDS="1 3 10 ... 1000000", LIGHTS="1 4 ... 1000" (among 64 solids),
-# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 16384x12288", DEPTHS="0 ... 14" (of the tree of rays), LEVELS="0 1 ...
+# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 16384x12288", DEPTHS="0 ... 14" (of the tree of rays), LEVELS="0 ...
 # 64" (the depth of random paths).
 # Scenes: random_scene.awk with seed 1, soup.yaml, rod.yaml; one thread; depth 4, triangles 0; paths: 4 a pixel. A round
 # renders every scene once. Times are CPU times of tracing, without reading the scene and building its hierarchy.

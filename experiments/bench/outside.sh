@@ -2,7 +2,7 @@
 # outside: CPU time of whole programs, where most of the work is not the tracing
 # SOLIDS="1000 8000 100000 1000000" (spheres, named or above 100000 a cloud, at depth 0, to PNG), CELLS=200 (of a study
 # of 64x48), TRIANGLES=1000000 (of OBJ and PLY files), SIDES="1024 4096" (of a square image, to PNG and PFM; the largest
-# is 16384). One thread. User and system time together; time outside the tracing is the program's less that of its frames.
+# is 16384). One thread. User and system time together; outside the tracing: the program's less that of its frames.
 solids=${SOLIDS:-1000 8000 100000 1000000} cells=${CELLS:-200} triangles=${TRIANGLES:-1000000} sides=${SIDES:-1024 4096}
 rod=$here/scenes/rod.yaml
 
@@ -59,7 +59,10 @@ column() { # column NAME FILE.csv: the sum of a column, all to the left of quote
 }
 report() {
     local n kind
-    for n in $solids; do row "solids $n" '$1' "$n $( ((n > 100000)) && echo solids of a cloud || echo named solids) to PNG: CPU s"; done
+    for n in $solids; do
+        kind=$( ((n > 100000)) && echo solids of a cloud || echo named solids)
+        row "solids $n" '$1' "$n $kind to PNG: CPU s"
+    done
     row small '1000 * $1' 'rod, 16x16, to PNG: CPU ms'
     row rod '1000 * $1' 'rod, 400x300, to PNG: CPU ms'
     row rod '1000 * ($1 - $2)' '  outside the tracing: CPU ms'

@@ -6,7 +6,7 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "report/json.h"
-#include "report/lesson_rows.h"
+#include "report/report.h"
 
 #include <math.h>
 #include <stdio.h>

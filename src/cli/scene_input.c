@@ -4,7 +4,7 @@
 #include "base/budget.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
-#include "job/frame_notes.h"
+#include "job/account.h"
 #include "lint/lint.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

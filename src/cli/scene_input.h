@@ -98,7 +98,7 @@ void scene_input_note_hints(const scene *s);
 /* Prints all notes of the linter (lint/lint.h) on a loaded scene. */
 status scene_input_lint(const scene *s, isa level, diagnostic *why);
 
-/* Prints the notes on a rendered frame (job/frame_notes.h). */
+/* Prints the notes on a rendered frame (job/account.h). */
 void scene_input_note_frame(const job_account *frame);
 
 /* isa_choose; diagnostics name the environment. */

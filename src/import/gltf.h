@@ -80,8 +80,6 @@ status gltf_decode(const gltf_file *g, gltf_item of, const char *uri, unsigned c
 /* The name of a file in a URI: %20 and the like replaced. NULL without memory; the caller's. */
 char *gltf_file_name(const char *uri);
 
-/* --- gltf_accessor.c --- */
-
 /* The numbers of an accessor, checked against the bytes of its buffers. */
 typedef struct gltf_accessor {
     size_t count, stride, sparse_count, sparse_size;

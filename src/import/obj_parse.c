@@ -110,8 +110,8 @@ static const form normal_form = {3,
                                  "a normal has fewer than three numbers",
                                  "give three finite numbers"};
 
-/* Reads the numbers of a statement. What follows them, such as the weight or colour of a place, is not used: x, y, z are
- * as written. */
+/* Reads the numbers of a statement. What follows them, such as the weight or colour of a place, is not used: x, y, z
+ * are as written. */
 static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[3])
 {
     int count = 0;

@@ -1,5 +1,5 @@
 /* Notes on the light of photons in a frame. */
-#include "job/frame_notes.h"
+#include "job/account.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 

@@ -396,8 +396,10 @@ static bool is_covered(const lint_input *input, const neighbour *a, const neighb
 /* False: the pair needs no examination. */
 static bool prepare_pair(const lint_input *input, const neighbour *a, const neighbour *b, pair *p)
 {
-    if ((a->of->opaque && b->of->opaque) || a->owner == b->owner)
-        return false; /* their interior is invisible; layers of one mesh are one solid */
+    if (a->of->opaque && b->of->opaque)
+        return false; /* their interior is invisible */
+    if (a->owner == b->owner && !scene_points_of(input->original, a->owner))
+        return false; /* layers of one mesh are one solid */
     *p = (pair){.input = input, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
     if (!isfinite(p->thinner))
         p->thinner = 1.0;

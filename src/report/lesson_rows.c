@@ -1,6 +1,6 @@
 /* Lessons and their results as JSON. */
-#include "report/lesson_rows.h"
 #include "base/json_build.h"
+#include "report/report.h"
 
 #include "report/json.h"
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "report/report.h"
 #include "base/json_build.h"
 #include "base/number.h"
-#include "job/frame_notes.h"
+#include "job/account.h"
 #include "measure/statistics.h"
 #include "report/json.h"
 #include "report/param_rows.h"

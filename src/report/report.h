@@ -5,6 +5,7 @@
 
 #include "image/compare.h"
 #include "job/quantities.h"
+#include "lesson/lesson.h"
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
@@ -34,3 +35,7 @@ bool report_comparison(json_t *o, const image_comparison *c);
 
 /* The JSON value of a parameter, parsed from its text. */
 json_t *report_value(const param *row, const char *text);
+
+/* Lessons and their results, for `cuvette lesson show` and the laboratory (lesson_rows.c). */
+json_t *lesson_json(const lesson *l);
+json_t *lesson_result_json(const lesson *l, const lesson_result *r);

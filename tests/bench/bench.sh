@@ -75,11 +75,11 @@ for want in 'slime film 32x24, whole program' 'slime step, level 1: times real t
 small processes
 for want in 'rod.yaml to a PNG of 8 bits' 'rod.yaml to a PNG of 16 bits' 'OBJ of 320 triangles' \
     'rod, depth 8: speed of the build by clang'; do has_ratio "$text" "$want"; done
-small growth SOLIDS='1 100' LIGHTS='1 2' SIZES='8x6 16x12' DEPTHS='0 1'
+small growth SOLIDS='1 100' LIGHTS='1 2' SIZES='8x6 16x12' DEPTHS='0 1' LEVELS='0 1'
 rows=$(awk -F'\t' 'NR > 1 && NF == 14 && $3 == 1 && $4 >= $5 && $6 > 0 && $12 > 1e6' <<<"$text" | cut -f 1,2)
 wanted='solids 1;solids 100;lights 1;lights 2;lights-path 1;lights-path 2;sparse 320;sphere 320;pixels 48;pixels 192;'
 equal 'growth: a row for every size, each with its rays, times and memory' "$(tr '\t\n' ' ;' <<<"$rows")" \
-    "${wanted}depth 0;depth 1;"
+    "${wanted}depth 0;depth 1;depth-path 0;depth-path 1;"
 equal 'growth: a camera ray a pixel' "$(awk -F'\t' '$1 == "pixels" { print $5 - $2 }' <<<"$text" | tr '\n' ' ')" '0 0 '
 text=$(CUVETTE=$work/nowhere experiments/bench.sh solids 2>&1)
 [[ $? == 2 && $text == "bench.sh solids: no program $work/nowhere; make builds it" ]]

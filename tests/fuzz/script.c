@@ -1,7 +1,7 @@
 /* The libFuzzer entry for the script reader: any bytes give a script or one located error. The keys of an accepted
  * script obey the rules of hands, so that each key can be added again. `make fuzz` builds and runs it; seeds are
  * experiments/ and tests/bad/scripts/. */
-#include "scene/assets/script.h"
+#include "scene/assets/slime.h"
 
 #include "fuzz.h"
 

@@ -50,7 +50,7 @@ static texture *owned(image *img, texture_wrap wrap, texture_filter filter)
     return t;
 }
 
-/* A red texel of alpha 1 beside a green one of alpha 0, and a blue row above of alpha 1/2. */
+/* A red texel of alpha 1 next to a green one of alpha 0, and a blue row above of alpha 1/2. */
 static image *partly_clear(void)
 {
     image *img = blank(2, 2);

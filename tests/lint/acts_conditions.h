@@ -114,7 +114,7 @@ static const condition conditions[] = {
     {"rod", "liquid.sheet=polariser", "liquid.sheet_axis", "unpolarised", true},
     {"rod", "render.polarisation=on liquid.sheet=retarder", "liquid.sheet_axis", "no-retardance", true},
     {"rod", "render.polarisation=on liquid.sheet=polariser liquid.sheet_block=1", "liquid.sheet_axis", "grey", true},
-    {"../../tests/data/acts/holes", "skin.alpha=blend", "skin.alpha_cutoff", "no-mask", true},
+    {"../../tests/data/acts/holes", "wall.alpha=blend", "wall.alpha_cutoff", "no-mask", true},
     {"models", "lamp.intensity=0 bowl.ambient=0 china.reflectivity=0", "bowl.shading", "unshaded", true},
 };
 
@@ -127,8 +127,8 @@ static const counterpart counterparts[] = {
     {"no-textures", "models", "bowl.texture", ""},
     {"no-texture", "slime", "floor.texture_size", ""},
     {"mesh-texture", "slime", "paving.texture_size", ""},
-    {"no-alpha", "../../tests/data/acts/holes", "skin.alpha", ""},
-    {"no-alpha", "../../tests/data/acts/holes", "skin.alpha_cutoff", ""},
+    {"no-alpha", "../../tests/data/acts/holes", "wall.alpha", ""},
+    {"no-alpha", "../../tests/data/acts/holes", "wall.alpha_cutoff", ""},
     {"one-mesh", "models", "ring.mesh", ""},
     {"apart", "rod", "liquid.priority", ""},
     {"beam-lights-nothing", "magnifier", "sun.power", "render.caustics=photons sun.lights=on sun.target=0,-0.4,1.2"},

@@ -323,9 +323,9 @@ static void alpha_that_is_ignored_gives_a_hint(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
-        {"skin.alpha=mask", ""},
-        {"skin.alpha=blend", ""},
-        {"skin.alpha=opaque", "crate.alpha: the image on crate has alpha, which is ignored; set its alpha to mask or "
+        {"wall.alpha=mask", ""},
+        {"wall.alpha=blend", ""},
+        {"wall.alpha=opaque", "crate.alpha: the image on crate has alpha, which is ignored; set its alpha to mask or "
                               "blend\n"}};
     for (size_t i = 0; i < 3; i++) {
         scene *s;

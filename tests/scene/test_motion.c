@@ -13,7 +13,7 @@
 #include "base/cancel.h"
 #include "base/hash.h"
 #include "render_fixture.h"
-#include "scene/assets/script.h"
+#include "scene/assets/slime.h"
 #include "scene/model/scene.h"
 #include "scene/motion/motion_hands.h"
 

@@ -1,7 +1,6 @@
 /* A minute of the default toy with the recorded grab of experiments/hands/tug.yaml: it rests, is stretched, released,
  * and recovers. Its rest shape is not a sphere but a drop on a floor, so it recovers to the shape of an untouched toy;
  * without gravity, to the sphere. */
-#include "scene/assets/script.h"
 #include "softbody_fixture.h"
 #include "whole.h"
 

@@ -6,6 +6,7 @@
 #include "base/elementary.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
@@ -151,7 +152,7 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                             .reflects = p->basic && !scene_has_constant_weights(&s->render),
                             .partial = solid_is_partial(s, one),
                             .solid = i};
-    if (source.partial && !is_mesh) /* a skin around the surrounding medium */
+    if (source.partial && !is_mesh) /* an open surface in the surrounding medium */
         source.opaque = false, source.attenuates = surroundings_absorb(&s->background);
     if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
         source.further_media = (int64_t)(s->solid_count + *copies);
@@ -334,8 +335,8 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
 {
     for (int r = 0; r <= p->geometry->region_count; r++) {
         const int solid_index = p->geometry->regions[r].solid;
-        const bool skin = p->geometry->regions[r].partial;
-        p->laws[r] = &p->solid_laws[solid_index < 0 || skin ? (int)s->solid_count : solid_index];
+        const bool open = p->geometry->regions[r].partial;
+        p->laws[r] = &p->solid_laws[solid_index < 0 || open ? (int)s->solid_count : solid_index];
         p->ior[r] = index_law_at(p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
             continue;
@@ -345,7 +346,7 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
         for (int k = 0; k < p->shading_materials[r].count; k++)
             if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
                 return out_of_memory(why);
-        p->absorption[r] = skin ? vec3_scale(s->background.absorb_per_m, s->render.unit_m)
+        p->absorption[r] = open ? vec3_scale(s->background.absorb_per_m, s->render.unit_m)
                                 : material_extinction(p->materials[r], s->render.unit_m);
     }
     return STATUS_OK;

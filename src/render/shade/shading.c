@@ -357,18 +357,21 @@ static void polarise_children(const tracer *t, ray_queue *q, int first, bool ref
         q->sq[first + k] = sq[list[k]], q->su[first + k] = su[list[k]], q->sv[first + k] = sv[list[k]];
 }
 
-/* Enqueues children of one kind, except those that do not exist or have too small a weight. Returns their number. */
-int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, double *weight,
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside)
 {
     ray_queue *q = tracer_queue_at(t, depth);
     const bool reflected = weight == t->surface.branches.reflect,
                colored = surface_is_layered(t) && t->layered->colored;
     const int first = q->count;
-    int list[ROW];
-    if (t->least_weight > 0.0)
-        cut_faint(t, colored, reflected, weight);
     const group *g = &t->surface.gathered;
+    int list[ROW];
+    double kept[ROW]; /* a probe reads the weights of the branches that are cut */
+    if (t->least_weight > 0.0) {
+        memcpy(kept, weight, (size_t)g->count * sizeof *kept);
+        cut_faint(t, colored, reflected, kept);
+        weight = kept;
+    }
     const new_rays children = {dx, dy, dz, g->wr, g->wg, g->wb, weight, inside, g->sample_key, NULL};
     const int count = t->grouping->append(g, &children, list, q);
     if (colored)

@@ -61,9 +61,9 @@ static inline bool surface_reflects(const tracer *t)
     return t->surface.mat->surface.reflectivity > 0.0 || surface_is_layered(t);
 }
 
-/* Enqueues children of one kind, reflected or refracted, with the sample keys of the gathered rays; weights that are too
- * small become 0. Returns their number. */
-int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, double *weight,
+/* Enqueues children of one kind, reflected or refracted, with the sample keys of the gathered rays, except those that
+ * do not exist or have too small a weight. Returns their number. */
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside);
 
 /* Gathers the rays of groups of one shading class, of the batch at `first` in the queue of a depth, computes their

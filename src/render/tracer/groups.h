@@ -2,8 +2,8 @@
  *
  * Rays of a batch that hit one primitive on one region's surface are a group (hit_groups). Groups of one shading class
  * (plan.h) are neighbours in the list, so that they can be shaded as one: in a scene of many solids, small groups would
- * leave most lanes of a vector empty. A kernel gathers the rays into contiguous arrays (group), in which the shading kernels
- * compute light (lit_group) and branches (branch_group).
+ * leave most lanes of a vector empty. A kernel gathers the rays into contiguous arrays (group), in which the shading
+ * kernels compute light (lit_group) and branches (branch_group).
  *
  * Ownership: values; the table of marks belongs to the tracer. Cannot fail. */
 #pragma once
@@ -37,7 +37,7 @@ typedef struct group {
     surface_batch points;
     double cr[ROW], cg[ROW], cb[ROW]; /* the material's colour at the point */
     int count;
-    int padded; /* count rounded up to whole vectors of the instruction set; the lanes past count repeat the last ray and are never read */
+    int padded; /* count rounded up to whole vectors; the lanes past count repeat the last ray, and are never read */
 } group;
 
 /* Shadow rays to one light: direction, and the radiance that each contributes if unblocked. */

@@ -1,5 +1,5 @@
-/* Lists the groups of a batch's rays, gathers the rays of groups, and sends out new rays from their points. Compiled once
- * for each instruction set. */
+/* Lists the groups of a batch's rays, gathers the rays of groups, and sends out new rays from their points. Compiled
+ * once for each instruction set. */
 #include "render/tracer/groups.h"
 
 #include "base/lanes.h"

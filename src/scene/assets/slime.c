@@ -1,7 +1,6 @@
 /* Simulates the slime of a mesh entry up to its time, and makes its surface mesh. */
 #include "scene/assets/slime.h"
 #include "measure/clock.h"
-#include "scene/assets/script.h"
 
 #include <math.h>
 #include <stdlib.h>

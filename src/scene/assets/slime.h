@@ -5,6 +5,28 @@
 
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
+#include "softbody/softbody.h"
+
+/* --- script.c --- */
+
+/* Script files: recorded hands that act on a slime. YAML:
+ *
+ *   title: A tug to the left            # optional
+ *   hands:
+ *     left:                             # any name; each hand holds one place at a time
+ *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # where this ray (point, direction) hits
+ *       - {time_s: 1.5, move: [-1.2, 0.8, 0]}                               # displacement since the grab, at that time
+ *       - {time_s: 2.0, release: on}
+ *
+ * Points are in the frame of the slime's mesh, which is the world's if its solid is not moved, rotated or scaled. The
+ * caller releases a script with hand_script_destroy. */
+
+/* Reads a file below root (base/file.h; NULL: no restriction). */
+status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
+/* Reads a script from memory; name is used in diagnostics. */
+status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);
+
+/* --- slime.c --- */
 
 /* Reads the script of a mesh entry; *out is NULL if it has none. The caller destroys the script. */
 status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out, diagnostic *why);

@@ -316,7 +316,7 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
     return STATUS_OK;
 }
 
-/* A surface with holes, or that is there in part, is a skin: nothing can be behind it that refracts. */
+/* A surface with holes, or that is there in part, is open: nothing can be behind it that refracts. */
 static status check_alpha(const solid *owner, diagnostic *why)
 {
     const material *m = &owner->surface;

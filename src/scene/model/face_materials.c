@@ -1,5 +1,6 @@
 /* Finds the material of a face: the scene's, the mesh file's or the solid's. */
 #include "scene/model/face_materials.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -164,4 +165,17 @@ bool ignores_face_transparency(const scene *s, const solid *owner)
             return true;
     }
     return false;
+}
+
+status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why)
+{
+    const mesh_entry *m = scene_mesh_of(s, owner);
+    if (!m || !m->data || !m->data->closed || m->data->shell_count < 2 || solid_is_opaque(s, owner)) {
+        *layers = m && m->data ? &m->data : NULL;
+        *count = *layers ? 1 : 0;
+        return STATUS_OK;
+    }
+    diagnostic bad = {.what = ""};
+    const status code = hierarchy_layers(m->data, scene_build_threads(&s->render), layers, count, &bad);
+    return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", owner->name, bad.what);
 }

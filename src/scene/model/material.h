@@ -23,7 +23,7 @@ enum { SCENE_MATERIALS_MAX = 256 };
  *           the rest (Porter and Duff's `over`). In ray trees it is divided, and the part that goes on is one deeper;
  *           random paths and photons meet the surface with that probability; a shadow ray keeps the rest.
  * Integrators whose rays do not branch (lighting other than whitted, maps) cut a blended surface at alpha 1/2. Such a
- * solid is a skin: the surrounding medium is behind it, too, and light that passes is not deflected. */
+ * solid is an open surface: the surrounding medium is behind it, too; light that passes is not deflected. */
 typedef enum material_alpha { ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND } material_alpha;
 
 /* The fields of Phong's equation I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n, and of the

@@ -3,9 +3,7 @@
 #include "base/elementary.h"
 #include "base/file.h"
 #include "base/thread_team.h"
-#include "geometry/hierarchy/hierarchy.h"
 #include "geometry/shapes/shape.h"
-#include "scene/model/face_materials.h"
 #include "scene/model/objects.h"
 #include "scene/model/open.h"
 #include "scene/model/params_value.h"
@@ -177,19 +175,6 @@ solid_shape scene_loaded_shape(const scene *s, const solid *owner)
     shape.mesh = m ? m->data : NULL;
     shape.points = points ? points->data : NULL;
     return shape;
-}
-
-status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why)
-{
-    const mesh_entry *m = scene_mesh_of(s, owner);
-    if (!m || !m->data || !m->data->closed || m->data->shell_count < 2 || solid_is_opaque(s, owner)) {
-        *layers = m && m->data ? &m->data : NULL;
-        *count = *layers ? 1 : 0;
-        return STATUS_OK;
-    }
-    diagnostic bad = {.what = ""};
-    const status code = hierarchy_layers(m->data, scene_build_threads(&s->render), layers, count, &bad);
-    return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", owner->name, bad.what);
 }
 
 const texture_entry *scene_find_texture(const scene *s, const char *name)

@@ -45,9 +45,6 @@ const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
 const mesh_entry *scene_points_of(const scene *s, const solid *owner);
 /* The solid's shape, with the triangles of its mesh, or its points, if they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
-/* The layers of a solid's mesh (hierarchy_layers), whose union rays see; an opaque solid, whose inside they do not see,
- * and an open mesh have one. *count is 0 without a loaded mesh. The mesh owns the list. */
-status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
 
 /* The first light of kind sun, or NULL. */

@@ -2,7 +2,6 @@
 #include "base/cancel.h"
 #include "base/text.h"
 #include "measure/clock.h"
-#include "scene/assets/script.h"
 #include "scene/assets/slime.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"

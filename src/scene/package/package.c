@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "geometry/hierarchy/hierarchy.h"
 #include "scene/file/write.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/integrators.h"
 #include "scene/model/scene.h"
 #include "scene/package/package_scene.h"

@@ -3,7 +3,7 @@
 #include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "report/lesson_rows.h"
+#include "report/report.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 #include "web/api/api.h"

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "job/frame_notes.h"
+#include "job/account.h"
 #include "job/job.h"
 #include "render_fixture.h"
 #include "report/report.h"

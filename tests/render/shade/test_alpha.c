@@ -159,19 +159,19 @@ static void layers_of_blended_cards_multiply(void **state)
     scene_destroy(s);
 }
 
-#define SKIN(shape)                                                                                      \
+#define OPEN(shape)                                                                                      \
     SETTINGS("")                                                                                         \
     "textures: {map: {file: none.png, filter: nearest}}\nmaterials: {leaf: {" GLOWS ", texture: map}}\n" \
     "solids:\n  ball: {material: leaf, " shape "}\n"
-#define BALL SKIN("shape: sphere, radius: 3")
+#define BALL OPEN("shape: sphere, radius: 3")
 
-/* A ray meets a solid's skin twice, or once from within. */
+/* A ray meets a solid's surface twice, or once from within. */
 static void a_solid_is_a_skin_with_two_sides(void **state)
 {
     (void)state;
-    static const char *const shapes[] = {BALL, SKIN("shape: box, size: [4, 4, 4]"),
-                                         SKIN("shape: cylinder, radius: 3, height: 6, position: [0, -3, 0]"),
-                                         SKIN("shape: torus, radius: 9, tube_radius: 2, position: [9, 0, 0]")};
+    static const char *const shapes[] = {BALL, OPEN("shape: box, size: [4, 4, 4]"),
+                                         OPEN("shape: cylinder, radius: 3, height: 6, position: [0, -3, 0]"),
+                                         OPEN("shape: torus, radius: 9, tube_radius: 2, position: [9, 0, 0]")};
     for (int i = 0; i < 4; i++) {
         for (int within = 0; within < 2; within++) {
             const char *text = within ? "leaf.alpha=blend camera.position=0,0,-0.5 camera.view_height=0.5"
@@ -184,7 +184,7 @@ static void a_solid_is_a_skin_with_two_sides(void **state)
             render_result_destroy(r);
         }
     }
-    /* a smaller ball inside, of higher priority, is seen through the skin */
+    /* a smaller ball inside, of higher priority, is seen through the surface */
     render_result *r = image_of(
         BALL
         "  core: {shape: sphere, radius: 2.5, priority: 1, color: [0, 1, 1], emission: 1, diffuse: 0, specular: 0, "
@@ -278,7 +278,7 @@ static void a_blended_card_dims_the_lamp_on_the_floor(void **state)
     }
 }
 
-#define SKINS                                                                                                      \
+#define SOLIDS                                                                                                     \
     "  card: {shape: mesh, mesh: square, material: leaf, position: [0.5, 1.5, 0.4], rotation: [20, 30, 0]}\n"      \
     "  ball: {shape: sphere, material: leaf, position: [-1, 0.7, 0.3], radius: 0.6}\n"                             \
     "  crate: {shape: mesh, mesh: closed, material: leaf, position: [1, 0.5, -1], rotation: [10, 20, 30]}\n"       \
@@ -315,11 +315,11 @@ static void alpha_0_everywhere_is_as_if_there_were_no_object(void **state)
         char gone[300];
         snprintf(gone, sizeof gone, "%s card.visible=off ball.visible=off crate.visible=off cup.visible=off",
                  settings[i]);
-        render_result *without = image_of(ROOM SKINS, gone, 1, 1, none);
+        render_result *without = image_of(ROOM SOLIDS, gone, 1, 1, none);
         for (int k = 0; k < 2; k++) {
             char text[300];
             snprintf(text, sizeof text, "%s leaf.alpha=%s", settings[i], modes[k]);
-            render_result *r = image_of(ROOM SKINS, text, 1, 1, none);
+            render_result *r = image_of(ROOM SOLIDS, text, 1, 1, none);
             /* an absorbing medium is added up in pieces, which are rounded */
             const double tolerance = strstr(settings[i], "absorb") ? 1e-6 : 0.0;
             if (films_apart(r, without) > tolerance)
@@ -336,16 +336,16 @@ static void alpha_1_everywhere_is_as_if_the_texture_had_none(void **state)
     for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
         char text[300];
         snprintf(text, sizeof text, "%s leaf.alpha=blend", settings[i]);
-        const uint64_t plain = hash_of(ROOM SKINS, settings[i], 1, 1, none);
-        assert_true(hash_of(ROOM SKINS, text, 1, 1, one) == plain);
+        const uint64_t plain = hash_of(ROOM SOLIDS, settings[i], 1, 1, none);
+        assert_true(hash_of(ROOM SOLIDS, text, 1, 1, one) == plain);
         /* with a cutoff below all alphas the card is searched as a partial surface, and is there everywhere */
         static const float far[2] = {0.5F, 1.0F};
         snprintf(text, sizeof text,
                  "%s leaf.alpha=mask ball.visible=off cup.visible=off crate.visible=off leaf.alpha_cutoff=0.25",
                  settings[i]);
-        const uint64_t cut = hash_of(ROOM SKINS, text, 2, 1, far);
+        const uint64_t cut = hash_of(ROOM SOLIDS, text, 2, 1, far);
         snprintf(text, sizeof text, "%s ball.visible=off cup.visible=off crate.visible=off", settings[i]);
-        assert_true(cut == hash_of(ROOM SKINS, text, 1, 1, one));
+        assert_true(cut == hash_of(ROOM SOLIDS, text, 1, 1, one));
     }
 }
 

@@ -38,8 +38,8 @@ export function createAxes(lab) {
 function axis({ name, x, y, depth }) {
   const size = Math.hypot(x, y);
   const [tipX, tipY] = [LENGTH * x, LENGTH * y];
-  const beside = size < 0.5; /* along the view, where another axis may end nearby */
-  const label = beside ? [tipX + 10, tipY + 2] : [tipX + (8 * x) / size, tipY + (8 * y) / size];
+  const aside = size < 0.5; /* along the view, where another axis may end nearby */
+  const label = aside ? [tipX + 10, tipY + 2] : [tipX + (8 * x) / size, tipY + (8 * y) / size];
   return svg(
     'g',
     { class: `axis-${name}` },
