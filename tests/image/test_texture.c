@@ -58,21 +58,6 @@ static image *noise(int width, int height)
     return img;
 }
 
-static texture *textured(const image *img, texture_wrap wrap, texture_filter filter)
-{
-    texture *t;
-    assert_int_equal(texture_create(img, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
-    return t;
-}
-
-/* The image is no longer needed. */
-static texture *owned(image *img, texture_wrap wrap, texture_filter filter)
-{
-    texture *t = textured(img, wrap, filter);
-    image_destroy(img);
-    return t;
-}
-
 static const texture_wrap wraps[] = {TEXTURE_REPEAT, TEXTURE_MIRROR, TEXTURE_CLAMP};
 static const texture_filter filters[] = {TEXTURE_NEAREST, TEXTURE_BILINEAR, TEXTURE_TRILINEAR};
 static const int sizes[][2] = {{1, 1}, {1, 8}, {7, 1}, {1, 2}, {3, 5}, {5, 3}, {8, 8}, {16, 4}, {13, 31}, {64, 33}};

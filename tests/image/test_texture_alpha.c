@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "base/hash.h"
-#include "image/texture.h"
+#include "texture_fixture.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,21 +33,6 @@ static void set(image *img, int x, int y, double r, double g, double b)
 {
     float *pixel = img->pixel + ((size_t)(img->height - 1 - y) * (size_t)img->width + (size_t)x) * 3;
     pixel[0] = (float)r, pixel[1] = (float)g, pixel[2] = (float)b;
-}
-
-static texture *textured(const image *img, texture_wrap wrap, texture_filter filter)
-{
-    texture *t;
-    assert_int_equal(texture_create(img, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
-    return t;
-}
-
-/* The image is no longer needed. */
-static texture *owned(image *img, texture_wrap wrap, texture_filter filter)
-{
-    texture *t = textured(img, wrap, filter);
-    image_destroy(img);
-    return t;
 }
 
 /* A red texel of alpha 1 next to a green one of alpha 0, and a blue row above of alpha 1/2. */

@@ -1,5 +1,11 @@
-/* What a texture holds, and one from a file. */
+/* What a texture holds, and one from a file or an image. */
 #pragma once
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
 
 #include "image/texture_parts.h"
 
@@ -33,4 +39,19 @@ static inline vec3 texture_texel(const texture *t, int level, int x, int y)
 static inline size_t texture_bytes(const texture *t)
 {
     return sizeof *t + t->block_bytes;
+}
+
+static inline texture *textured(const image *img, texture_wrap wrap, texture_filter filter)
+{
+    texture *t;
+    assert_int_equal(texture_create(img, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
+    return t;
+}
+
+/* The image is no longer needed. */
+static inline texture *owned(image *img, texture_wrap wrap, texture_filter filter)
+{
+    texture *t = textured(img, wrap, filter);
+    image_destroy(img);
+    return t;
 }

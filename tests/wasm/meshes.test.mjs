@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { gzipSync } from 'node:zlib';
 import { CuvetteError } from '../../src/wasm/api/cuvette.js';
 import { ROOT, cuvetteOf, runNative } from './fixture.mjs';
 
@@ -183,6 +184,51 @@ function stlBinary() {
   return Buffer.from(view.buffer);
 }
 
+/* glTF, with the image inside: a .glb file, or a .gltf file whose bytes are in the address. */
+function gltf(binary) {
+  const positions = Buffer.from(new Float32Array(VERTICES.flat()).buffer);
+  const corners = Buffer.from(new Uint16Array(TRIANGLES.flat()).buffer);
+  const pad = Buffer.alloc(-(positions.length + corners.length) & 3);
+  const bytes = Buffer.concat([positions, corners, pad, IMAGE, Buffer.alloc(-IMAGE.length & 3)]);
+  const views = [
+    { buffer: 0, byteLength: positions.length },
+    { buffer: 0, byteOffset: positions.length, byteLength: corners.length },
+    { buffer: 0, byteOffset: positions.length + corners.length + pad.length, byteLength: IMAGE.length },
+  ];
+  const json = {
+    asset: { version: '2.0' },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0, scale: [1, -1, 1], translation: [0, 0.1, 0] }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 2 }, indices: 1, material: 0 }] }],
+    materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } }, alphaMode: 'MASK' }],
+    textures: [{ source: 0 }],
+    images: [{ bufferView: 2, mimeType: 'image/png' }],
+    buffers: [{ byteLength: bytes.length }],
+    bufferViews: views,
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: VERTICES.length, type: 'VEC3' },
+      { bufferView: 1, componentType: 5123, count: 3 * TRIANGLES.length, type: 'SCALAR' },
+      { bufferView: 0, componentType: 5126, count: VERTICES.length, type: 'VEC2' },
+    ],
+  };
+  if (!binary) {
+    json.buffers[0].uri = `data:application/octet-stream;base64,${bytes.toString('base64')}`;
+    return JSON.stringify(json);
+  }
+  const text = Buffer.from(JSON.stringify(json).padEnd((JSON.stringify(json).length + 3) & ~3));
+  const head = Buffer.alloc(20);
+  head.write('glTF', 0);
+  head.writeUInt32LE(2, 4);
+  head.writeUInt32LE(28 + text.length + bytes.length, 8);
+  head.writeUInt32LE(text.length, 12);
+  head.write('JSON', 16);
+  const chunk = Buffer.alloc(8);
+  chunk.writeUInt32LE(bytes.length, 0);
+  chunk.write('BIN\0', 4);
+  return Buffer.concat([head, text, chunk, bytes]);
+}
+
 const CASES = {
   'a box with materials': { 'thing.obj': read('faces.obj'), 'faces.mtl': read('faces.mtl') },
   'all forms of OBJ': { 'thing.obj': OBJ, 'thing.mtl': MTL, 'chequer.png': IMAGE },
@@ -197,6 +243,10 @@ const CASES = {
   'triangle strips of PLY': { 'thing.ply': STRIPS },
   'STL as text': { 'thing.stl': stlText() },
   'STL, binary': { 'thing.stl': stlBinary() },
+  'glTF with its bytes and image inside': { 'thing.gltf': gltf(false) },
+  'binary glTF': { 'thing.glb': gltf(true) },
+  'OBJ compressed by gzip': { 'thing.obj.gz': gzipSync(prism(9)) },
+  'binary glTF compressed by gzip': { 'thing.glb.gz': gzipSync(gltf(true)) },
   'an OBJ without its library': { 'thing.obj': 'mtllib none.mtl\nusemtl none\n' + prism(5) },
 };
 

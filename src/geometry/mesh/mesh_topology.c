@@ -72,20 +72,20 @@ static uint32_t *allocate_numbers(size_t count)
     return large_pages(malloc(count * sizeof(uint32_t)), count * sizeof(uint32_t));
 }
 
-/* The result for a mesh in which no two vertices have the same position. */
-static status weld_distinct(const mesh *m, uint32_t **same, diagnostic *why)
+/* The list of the numbers 0 to count - 1, with room for one more. */
+static status number_all(size_t count, const char *no_memory, uint32_t **out, diagnostic *why)
 {
-    uint32_t *list = *same = allocate_numbers(m->vertex_count + 1);
-    for (size_t v = 0; list && v < m->vertex_count; v++)
-        list[v] = (uint32_t)v;
-    return list ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
+    uint32_t *list = *out = allocate_numbers(count + 1);
+    for (size_t k = 0; list && k < count; k++)
+        list[k] = (uint32_t)k;
+    return list ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", "%s", no_memory);
 }
 
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
 {
     *same = NULL;
-    if (m->distinct)
-        return weld_distinct(m, same, why);
+    if (m->distinct) /* no two vertices have the same position */
+        return number_all(m->vertex_count, NO_MEMORY, same, why);
     enum { AHEAD = 16 }; /* the table exceeds the caches: prefetch its lines */
     size_t size = 16;
     while (size < 2 * m->vertex_count)
@@ -455,21 +455,12 @@ static status orient_all(mesh *m, const edge_lists *lists, diagnostic *why)
     return result;
 }
 
-/* An array for join_parts in which each triangle is a part. */
-static status parts_make(const mesh *m, uint32_t **parts, diagnostic *why)
-{
-    uint32_t *list = *parts = allocate_numbers(m->triangle_count + 1);
-    for (size_t t = 0; list && t < m->triangle_count; t++)
-        list[t] = (uint32_t)t;
-    return list ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_EDGES);
-}
-
 status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why)
 {
     edge_lists lists = {0};
     *first = NULL;
     status result = edge_lists_make(m, &lists, why);
-    THEN(result, parts_make(m, first, why));
+    THEN(result, number_all(m->triangle_count, NO_EDGES, first, why)); /* each triangle is a part */
     if (result == STATUS_OK) {
         find_pairs(m, &lists, NULL, *first);
         result = cancel_check(why);
@@ -492,7 +483,7 @@ status mesh_close(mesh *m, diagnostic *why)
     m->closed = false;
     m->hole = (mesh_hole){0};
     status result = edge_lists_make(m, &lists, why);
-    THEN(result, parts_make(m, &parts, why));
+    THEN(result, number_all(m->triangle_count, NO_EDGES, &parts, why));
     if (result == STATUS_OK) {
         const edge_findings found = find_pairs(m, &lists, NULL, parts);
         result = cancel_check(why);
