@@ -239,6 +239,7 @@ static status add_sun(first_scene *f)
     const vec3 from = vec3_normalize(
         vec3_add(vec3_add(vec3_scale(frame.forward, -1), vec3_scale(frame.right, -0.6)), vec3_make(0, 1, 0)));
     l->kind = LIGHT_SUN;
+    l->angular_diameter_deg = 0; /* a size that nobody set would be noted where shadows are sharp */
     l->position = vec3_add(f->centre, vec3_scale(from, 2 * f->radius));
     l->target = f->centre;
     return STATUS_OK;
