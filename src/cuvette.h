@@ -495,7 +495,8 @@ typedef struct cuvette_hit {
 CUVETTE_API cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_ray *rays, size_t count,
                                                  cuvette_hit *hits, cuvette_diagnostic *why);
 
-/* Sets blocked[i] to 1 if there is any interface on rays[i], else to 0. */
+/* Sets blocked[i] to 1 if there is any interface on rays[i], else to 0. A surface with alpha is an interface where its
+ * alpha is at least 1/2, with `mask` at least its cutoff; so it is for cuvette_query_nearest. */
 CUVETTE_API cuvette_status cuvette_query_occluded(const cuvette_query *query, const cuvette_ray *rays, size_t count,
                                                   unsigned char *blocked, cuvette_diagnostic *why);
 

@@ -47,7 +47,9 @@ static status prepare(cuvette_query *q, const scene *s, const char *lambda_nm, c
     if (code == STATUS_OK && lambda_nm)
         code = scene_set(q->model, "render.lambda_nm", lambda_nm, why);
     q->one_wavelength = lambda_nm != NULL;
-    return code == STATUS_OK ? plan_build(q->model, &q->ready, why) : code;
+    THEN(code, plan_build(q->model, &q->ready, why));
+    q->cover = (cover_source){q->ready, q->kernels};
+    return code;
 }
 
 static cuvette_query *new_query(void)
@@ -175,6 +177,7 @@ query_buffers *query_acquire_buffers(const cuvette_query *query)
         b->scratch.segments = NULL;
         b->scratch.crossings = NULL;
         b->scratch.meshes = &b->meshes;
+        b->scratch.cover = (surface_cover){cover_cut, &q->cover};
         b->meshes.counts = NULL;
     }
     return b;

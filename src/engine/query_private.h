@@ -8,6 +8,7 @@
 #include "geometry/regions/instance_set.h"
 #include "render/inspect/probe.h"
 #include "render/plan/plan.h"
+#include "render/shade/shading.h"
 
 #include <stdio.h>
 
@@ -42,6 +43,7 @@ struct cuvette_query {
     scene *model; /* a copy of the scene, from which the plan borrows */
     plan *ready;
     const geometry_kernels *kernels;
+    cover_source cover; /* of partial surfaces, for the batches */
     pthread_mutex_t lock;
     query_buffers *free_buffers;
     isa level;

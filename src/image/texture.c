@@ -274,6 +274,13 @@ uint64_t texture_hash(const texture *t, uint64_t hash)
     return hash;
 }
 
+uint64_t texture_sampler_hash(const texture *t, uint64_t hash)
+{
+    const int64_t sampler[] = {t->wrap_u, t->wrap_v, t->filter};
+    const bool usual = t->wrap_u == TEXTURE_REPEAT && t->wrap_v == TEXTURE_REPEAT && t->filter == TEXTURE_TRILINEAR;
+    return usual ? hash : hash_words(hash, sampler, 3);
+}
+
 /* ---- packing ---- */
 
 typedef struct texture_head {

@@ -70,6 +70,8 @@ double texture_alpha(const texture *covered, double u, double v);
 
 /* Adds size and texels of the image itself to a hash (base/hash.h), with alpha if some is below 1. */
 uint64_t texture_hash(const texture *t, uint64_t hash);
+/* Adds wrap and filter, unless they are those of OBJ files: repeat and trilinear. */
+uint64_t texture_sampler_hash(const texture *t, uint64_t hash);
 
 /* A texture as bytes (base/pack.h): the image itself travels, and the receiver computes the smaller levels again.
  * Unpacking checks the sizes, and that texels are finite; the caller owns the result. STATUS_BAD_INPUT for damaged

@@ -165,6 +165,8 @@ static void all_that_is_loaded_is_the_same(void **state)
         own(toy, kind);
     assert_true(s->meshes[0].data->single && !s->meshes[1].data->single);
     toy->slot_count = MESH_SLOTS_MAX; /* the most */
+    face_material *masked = (face_material *)(uintptr_t)face_materials_at(s->meshes[0].shading_materials, 1);
+    masked->alpha = ALPHA_MASK, masked->alpha_cutoff = 0.25;
     const package p = packed(s);
     scene *again = unpacked(&p);
     assert_string_equal(s->path, again->path);
@@ -187,6 +189,8 @@ static void all_that_is_loaded_is_the_same(void **state)
     const face_materials *l = again->meshes[0].shading_materials;
     assert_int_equal(face_materials_count(l), 3);
     assert_string_equal(face_materials_at(l, 0)->name, face_materials_at(s->meshes[0].shading_materials, 0)->name);
+    assert_true(face_materials_at(l, 0)->alpha == ALPHA_OPAQUE && face_materials_at(l, 1)->alpha == ALPHA_MASK);
+    assert_true(face_materials_at(l, 1)->alpha_cutoff == 0.25);
     int images = 0;
     const texture *shared = NULL;
     for (int i = 0; i < 3; i++) {

@@ -43,9 +43,10 @@ static const shading_material *material_crossed(const plan *p, const ray_crossin
     return &m->mat[slot < m->count ? slot : 0];
 }
 
-static surface_mapping mapping_crossed(const tracer *t, const ray_batch *rays, const ray_crossing *x, double size)
+static surface_mapping mapping_crossed(const cover_source *from, const ray_batch *rays, const ray_crossing *x,
+                                       double size)
 {
-    const scene_geometry *g = t->target.frame_plan->geometry;
+    const scene_geometry *g = from->frame_plan->geometry;
     if (x->mesh.face != FACE_NONE)
         return instance_set_mapping(g->meshes, &x->mesh);
     const int i = x->ray;
@@ -54,18 +55,30 @@ static surface_mapping mapping_crossed(const tracer *t, const ray_batch *rays, c
                  far = x->t * length;
     const ray_batch one = {1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &dx, &dy, &dz, &rays->start[i], &x->inside};
     surface_batch at;
-    t->geometry->surface(g, x->primitive, &one, &far, &at);
+    from->geometry->surface(g, x->primitive, &one, &far, &at);
     return primitive_mapping(&g->primitives[x->primitive], at.face[0], vec3_make(at.px[0], at.py[0], at.pz[0]), size);
+}
+
+/* The fraction of the surface that is there. */
+static double part_crossed(const cover_source *from, const ray_batch *rays, const ray_crossing *x)
+{
+    const shading_material *m = material_crossed(from->frame_plan, x);
+    if (!shading_material_is_partial(m))
+        return 1.0;
+    const surface_mapping at =
+        m->covered ? mapping_crossed(from, rays, x, m->surface.texture_size) : (surface_mapping){0};
+    return shading_material_cover(m, at.u, at.v);
+}
+
+double cover_cut(void *context, const ray_batch *rays, const ray_crossing *x)
+{
+    return part_crossed(context, rays, x) >= 0.5 ? 1.0 : 0.0;
 }
 
 static double cover_of(void *context, const ray_batch *rays, const ray_crossing *x)
 {
     tracer *t = context;
-    const shading_material *m = material_crossed(t->target.frame_plan, x);
-    if (!shading_material_is_partial(m))
-        return 1.0;
-    const surface_mapping at = m->covered ? mapping_crossed(t, rays, x, m->surface.texture_size) : (surface_mapping){0};
-    const double part = shading_material_cover(m, at.u, at.v);
+    const double part = part_crossed(&(cover_source){t->target.frame_plan, t->geometry}, rays, x);
     batch_cover *batch = &t->batch.cover;
     if (!batch->sample_keys || part == 0.0 || part == 1.0 || cover_use_of(t) == COVER_SPLIT)
         return part;

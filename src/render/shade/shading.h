@@ -4,6 +4,14 @@
 #include "render/shade/layered.h"
 #include "render/tracer/tracer.h"
 
+/* Coverage of partial surfaces for rays that are neither divided nor drawn: a surface is there where its alpha is at
+ * least 1/2. For surface_cover; context is a cover_source. */
+typedef struct cover_source {
+    const plan *frame_plan;
+    const geometry_kernels *geometry;
+} cover_source;
+double cover_cut(void *context, const ray_batch *rays, const ray_crossing *x);
+
 /* Begins a frame: partial surfaces (scene_geometry.h) have the alpha of their materials. */
 void cover_begin(tracer *t);
 

@@ -16,10 +16,11 @@
 typedef struct face_record {
     char name[SCENE_NAME_MAX + 1];
     int64_t given;
-    double number[8]; /* colour, diffuse, specular, shininess, emission, opacity */
-    int64_t image;    /* 0: none; 1: it follows; else the image of slot image - 2 */
+    double number[9]; /* colour, diffuse, specular, shininess, emission, opacity, alpha_cutoff */
+    int64_t alpha;
+    int64_t image; /* 0: none; 1: it follows; else the image of slot image - 2 */
 } face_record;
-_Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 10 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
+_Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 12 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
 
 static int64_t image_of(const face_materials *l, int slot)
 {
@@ -33,10 +34,11 @@ static int64_t image_of(const face_materials *l, int slot)
 static status put_material(pack_writer *to, const face_materials *l, int slot, diagnostic *why)
 {
     const face_material *m = face_materials_at(l, slot);
-    face_record record = {
-        .given = m->given,
-        .number = {m->color.x, m->color.y, m->color.z, m->diffuse, m->specular, m->shininess, m->emission, m->opacity},
-        .image = image_of(l, slot)};
+    face_record record = {.given = m->given,
+                          .number = {m->color.x, m->color.y, m->color.z, m->diffuse, m->specular, m->shininess,
+                                     m->emission, m->opacity, m->alpha_cutoff},
+                          .alpha = m->alpha,
+                          .image = image_of(l, slot)};
     memcpy(record.name, m->name, sizeof record.name);
     TRY(pack_put(to, &record, sizeof record, why));
     return record.image == 1 ? texture_pack(m->img, to, why) : STATUS_OK;
@@ -54,8 +56,8 @@ static status put_face_materials(pack_writer *to, const face_materials *l, diagn
 
 static bool is_record(const face_record *r, int slot)
 {
-    bool valid =
-        memchr(r->name, 0, sizeof r->name) && r->given >= 0 && r->given <= 1 && r->image >= 0 && r->image <= slot + 1;
+    bool valid = memchr(r->name, 0, sizeof r->name) && r->given >= 0 && r->given <= 1 && r->image >= 0 &&
+                 r->image <= slot + 1 && r->alpha >= ALPHA_OPAQUE && r->alpha <= ALPHA_BLEND;
     for (size_t i = 0; i < sizeof r->number / sizeof *r->number; i++)
         valid = valid && r->number[i] >= 0.0 && r->number[i] <= NUMBER_MAX;
     return valid;
@@ -75,7 +77,9 @@ static status get_material(pack_reader *from, face_material *list, int slot, dia
                          .specular = n[4],
                          .shininess = n[5],
                          .emission = n[6],
-                         .opacity = n[7]};
+                         .opacity = n[7],
+                         .alpha = (material_alpha)record.alpha,
+                         .alpha_cutoff = n[8]};
     memcpy(m->name, record.name, sizeof m->name);
     if (record.image == 1)
         return texture_unpack(from, &m->img, why);

@@ -126,12 +126,15 @@ static void hash_material(uint64_t *hash, const face_material *m)
 {
     const double numbers[] = {m->given, m->color.x, m->color.y, m->color.z, m->diffuse, m->specular, m->shininess};
     hash_array(hash, numbers, sizeof numbers / sizeof *numbers, sizeof *numbers);
-    const double later[] = {m->emission, 1.0 - m->opacity};
+    const bool masks = m->alpha == ALPHA_MASK;
+    const double later[] = {m->emission, 1.0 - m->opacity, (double)m->alpha, masks ? m->alpha_cutoff : 0.0};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
         const double numbered[] = {(double)i, later[i]};
         hash_array(hash, later[i] != 0.0 ? numbered : NULL, 2, sizeof *numbered);
     }
     hash_texture(hash, m->img);
+    if (m->img)
+        *hash = texture_sampler_hash(m->img, *hash);
 }
 
 static void hash_mesh(uint64_t *hash, const mesh *m)
