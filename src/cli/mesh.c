@@ -232,8 +232,8 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
     const mesh_request *request = content;
     const mesh *m = request->made;
     if (request->format != MESH_FORMAT_COUNT)
-        TRY(mesh_write(m, request->imported ? request->imported->materials : NULL, (mesh_format)request->format,
-                       request->generate, stream, why));
+        TRY(mesh_write(m, request->imported, (mesh_format)request->format, request->generate, request->output, stream,
+                       why));
     else if (request->json)
         return json_put(stream, mesh_rows_json(m), why);
     else

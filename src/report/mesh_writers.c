@@ -4,7 +4,9 @@
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "import/mesh_wire.h"
 #include "report/json.h"
+#include "scene/file/write.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -177,11 +179,16 @@ static void write_ply(const mesh *m, bool mirrored, FILE *stream)
 
 enum { GLB_HEADER = 12, GLB_CHUNK = 8, GL_FLOAT = 5126, GL_UINT = 5125, GL_VERTICES = 34962, GL_INDICES = 34963 };
 
-/* The arrays of the second chunk, in order: positions, normals, texture coordinates, and the triangles by slot. */
+/* The second chunk, in order: positions, normals, texture coordinates, the triangles by slot, and the image files of
+ * the looks, each filled up to a multiple of 4 bytes. */
 typedef struct glb_layout {
+    const mesh_import *looks;       /* NULL: none */
+    const char *path;               /* of the GLB file */
     size_t by_slot[MESH_SLOTS_MAX]; /* triangles */
     uint64_t bytes;                 /* so far */
     json_t *views, *accessors, *attributes;
+    json_t *materials, *images, *textures, *samplers;
+    json_t *extensions; /* its keys are the names */
     bool bad;
 } glb_layout;
 
@@ -245,63 +252,176 @@ static json_t *uri_json(const char *path)
     return result;
 }
 
-/* Adds a material, and its image. Colours are in [0, 1] in this format. */
-static json_t *material_json(const imported_material *m, const char *name, json_t *images, json_t *textures, bool *bad)
+/* Adds to a list or, with a key, to an object; takes the value. */
+static void add_to(glb_layout *l, json_t *to, const char *key, json_t *value)
 {
-    double c[4] = {0.0, 0.0, 0.0, m->opacity};
-    for (int k = 0; k < 3; k++)
-        c[k] = fmin(m->color[k], 1.0);
-    json_t *surface = json_pack("{s:[f,f,f,f],s:f,s:f}", "baseColorFactor", c[0], c[1], c[2], c[3], "metallicFactor",
-                                0.0, "roughnessFactor", 1.0);
-    if (m->texture) {
-        *bad |= json_array_append_new(images, json_pack("{s:o}", "uri", uri_json(m->texture))) != 0;
-        const json_int_t last = (json_int_t)json_array_size(images) - 1;
-        *bad |= json_array_append_new(textures, json_pack("{s:I}", "source", last)) != 0;
-        *bad |= json_object_set_new(surface, "baseColorTexture", json_pack("{s:I}", "index", last)) != 0;
+    l->bad |= (key ? json_object_set_new(to, key, value) : json_array_append_new(to, value)) != 0;
+}
+
+static size_t filled_up(size_t size)
+{
+    return (size + 3) / 4 * 4;
+}
+
+/* The images inside the mesh file come before those that are named by path: they keep their numbers. */
+static void add_images(glb_layout *l)
+{
+    for (int i = 0; l->looks && i < l->looks->image_count; i++) {
+        const imported_image *one = &l->looks->images[i];
+        const char *type = one->bytes[0] == 0xff ? "image/jpeg" : one->bytes[0] == 'B' ? "image/bmp" : "image/png";
+        add_to(l, l->views, NULL,
+               json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)l->bytes, "byteLength",
+                         (json_int_t)one->size));
+        json_t *image =
+            json_pack("{s:I,s:s}", "bufferView", (json_int_t)json_array_size(l->views) - 1, "mimeType", type);
+        l->bad |= json_array_insert_new(l->images, (size_t)i, image) != 0;
+        l->bytes += filled_up(one->size);
     }
-    json_t *one = json_pack("{s:o,s:b}", "pbrMetallicRoughness", surface, "doubleSided", 1);
+}
+
+/* How an image is laid on, in numbers of OpenGL (3.8.4); nothing for the way of a texture without a sampler. */
+static void add_sampler(const imported_material *m, json_t *texture, glb_layout *l)
+{
+    static const int wraps[] = {[MESH_WIRE_REPEAT] = 10497, [MESH_WIRE_MIRROR] = 33648, [MESH_WIRE_CLAMP] = 33071},
+                     near[] = {[MESH_WIRE_TRILINEAR] = 9729, [MESH_WIRE_BILINEAR] = 9729, [MESH_WIRE_NEAREST] = 9728},
+                     far[] = {[MESH_WIRE_TRILINEAR] = 9987, [MESH_WIRE_BILINEAR] = 9729, [MESH_WIRE_NEAREST] = 9728};
+    if (m->wrap_u == MESH_WIRE_REPEAT && m->wrap_v == MESH_WIRE_REPEAT && m->filter == MESH_WIRE_TRILINEAR)
+        return;
+    add_to(l, l->samplers, NULL,
+           json_pack("{s:i,s:i,s:i,s:i}", "wrapS", wraps[m->wrap_u], "wrapT", wraps[m->wrap_v], "magFilter",
+                     near[m->filter], "minFilter", far[m->filter]));
+    add_to(l, texture, "sampler", json_integer((json_int_t)json_array_size(l->samplers) - 1));
+}
+
+static void add_texture(const imported_material *m, json_t *surface, glb_layout *l)
+{
+    json_int_t image = m->image - 1;
+    char *moved = NULL;
+    if (!m->texture && !m->image)
+        return;
+    if (m->texture) {
+        l->bad |= write_moved_path(m->texture, "", l->path, &moved, NULL) != STATUS_OK;
+        add_to(l, l->images, NULL, json_pack("{s:o}", "uri", moved ? uri_json(moved) : NULL));
+        image = l->looks->image_count + (json_int_t)json_array_size(l->images) - 1;
+        free(moved);
+    }
+    json_t *texture = json_pack("{s:I}", "source", image);
+    add_sampler(m, texture, l);
+    add_to(l, l->textures, NULL, texture);
+    add_to(l, surface, "baseColorTexture", json_pack("{s:I}", "index", (json_int_t)json_array_size(l->textures) - 1));
+}
+
+static void add_extension(json_t *to, const char *name, json_t *value, glb_layout *l)
+{
+    add_to(l, to, name, value);
+    add_to(l, l->extensions, name, json_null());
+}
+
+/* Glass and strong emission, which the format itself does not have. */
+static json_t *extensions_json(const imported_material *m, double brightest, glb_layout *l)
+{
+    json_t *all = json_object();
+    if (brightest > 1.0)
+        add_extension(all, "KHR_materials_emissive_strength", json_pack("{s:f}", "emissiveStrength", brightest), l);
+    if (m->transmission == 0.0)
+        return all;
+    add_extension(all, "KHR_materials_transmission", json_pack("{s:f}", "transmissionFactor", m->transmission), l);
+    add_extension(all, "KHR_materials_ior", json_pack("{s:f}", "ior", m->ior), l);
+    if (m->attenuation_distance > 0.0)
+        add_extension(all, "KHR_materials_volume",
+                      json_pack("{s:f,s:f,s:[f,f,f]}", "thicknessFactor", 1.0, "attenuationDistance",
+                                m->attenuation_distance, "attenuationColor", m->attenuation_color[0],
+                                m->attenuation_color[1], m->attenuation_color[2]),
+                      l);
+    if (m->dispersion > 0.0)
+        add_extension(all, "KHR_materials_dispersion", json_pack("{s:f}", "dispersion", m->dispersion), l);
+    return all;
+}
+
+/* Alpha is the opacity without what glass lets through. */
+static double add_alpha(const imported_material *m, json_t *to, glb_layout *l)
+{
+    const double alpha = m->transmission < 1.0 ? fmin(m->opacity / (1.0 - m->transmission), 1.0) : 1.0;
+    if (m->alpha_mode == MESH_WIRE_ALPHA_MASK) {
+        add_to(l, to, "alphaMode", json_string("MASK"));
+        add_to(l, to, "alphaCutoff", json_real(m->alpha_cutoff));
+    } else if (m->alpha_mode == MESH_WIRE_ALPHA_BLEND || alpha < 1.0) {
+        add_to(l, to, "alphaMode", json_string("BLEND"));
+    }
+    return alpha;
+}
+
+/* Colours are in [0, 1] in this format. */
+static json_t *material_json(const imported_material *m, const char *name, glb_layout *l)
+{
+    const double *e = m->emissive, brightest = fmax(e[0], fmax(e[1], e[2])), by = fmax(brightest, 1.0);
+    json_t *one = json_pack("{s:b}", "doubleSided", 1), *extensions = extensions_json(m, brightest, l);
+    const double alpha = add_alpha(m, one, l);
+    json_t *surface =
+        json_pack("{s:[f,f,f,f],s:f,s:f}", "baseColorFactor", fmin(m->color[0], 1.0), fmin(m->color[1], 1.0),
+                  fmin(m->color[2], 1.0), alpha, "metallicFactor", 0.0, "roughnessFactor", 1.0);
+    add_texture(m, surface, l);
+    add_to(l, one, "pbrMetallicRoughness", surface);
     if (name && name[0])
-        *bad |= json_object_set_new(one, "name", json_of_text(name)) != 0;
-    if (c[3] < 1.0)
-        *bad |= json_object_set_new(one, "alphaMode", json_string("BLEND")) != 0;
+        add_to(l, one, "name", json_of_text(name));
+    if (brightest > 0.0)
+        add_to(l, one, "emissiveFactor", json_pack("[f,f,f]", e[0] / by, e[1] / by, e[2] / by));
+    if (json_object_size(extensions) > 0)
+        l->bad |= json_object_set(one, "extensions", extensions) != 0;
+    json_decref(extensions);
     return one;
 }
 
-/* The first chunk's document; NULL when out of memory. */
-static json_t *glb_json(const mesh *m, const imported_material *materials, bool mirrored, glb_layout *l)
+static void add_primitives(const mesh *m, json_t *to, glb_layout *l)
 {
-    json_t *primitives = json_array(), *list = json_array(), *images = json_array(), *textures = json_array();
-    *l = (glb_layout){.views = json_array(), .accessors = json_array(), .attributes = json_object()};
-    for (size_t t = 0; t < m->triangle_count; t++)
-        l->by_slot[m->slots ? m->slots[t] : 0]++;
-    add_vertices(m, mirrored, l);
     for (int slot = 0; slot < m->slot_count; slot++) {
         if (l->by_slot[slot] == 0)
             continue;
         const json_int_t indices = add_array(l, GL_INDICES, GL_UINT, "SCALAR", 3 * l->by_slot[slot], 4);
         json_t *one = json_pack("{s:O,s:I}", "attributes", l->attributes, "indices", indices);
-        if (materials && materials[slot].given) {
-            l->bad |= json_object_set_new(one, "material", json_integer((json_int_t)json_array_size(list))) != 0;
-            l->bad |= json_array_append_new(
-                          list, material_json(&materials[slot], m->slot_names[slot], images, textures, &l->bad)) != 0;
+        if (l->looks && l->looks->materials[slot].given) {
+            add_to(l, one, "material", json_integer((json_int_t)json_array_size(l->materials)));
+            add_to(l, l->materials, NULL, material_json(&l->looks->materials[slot], m->slot_names[slot], l));
         }
-        l->bad |= json_array_append_new(primitives, one) != 0;
+        add_to(l, to, NULL, one);
     }
-    const bool bad = l->bad || !list || !images || !textures;
+}
+
+/* Adds a list, which it takes, unless it is empty: the format has no empty lists. */
+static void add_list(json_t *to, const char *key, json_t *list, glb_layout *l)
+{
+    if (json_array_size(list) > 0)
+        l->bad |= json_object_set(to, key, list) != 0;
+    json_decref(list);
+}
+
+/* The first chunk's document; NULL when out of memory. */
+static json_t *glb_json(const mesh *m, bool mirrored, glb_layout *l)
+{
+    json_t *primitives = json_array(), *used = json_array();
+    l->views = json_array(), l->accessors = json_array(), l->attributes = json_object();
+    l->materials = json_array(), l->images = json_array(), l->textures = json_array(), l->samplers = json_array();
+    l->extensions = json_object();
+    for (size_t t = 0; t < m->triangle_count; t++)
+        l->by_slot[m->slots ? m->slots[t] : 0]++;
+    add_vertices(m, mirrored, l);
+    add_primitives(m, primitives, l);
+    add_images(l);
     json_t *all = json_pack("{s:{s:s,s:s},s:i,s:[{s:[i]}],s:[{s:i}],s:[{s:o}],s:o,s:o,s:[{s:I}]}", "asset", "version",
                             "2.0", "generator", "Cuvette", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh", 0,
                             "meshes", "primitives", primitives, "accessors", l->accessors, "bufferViews", l->views,
                             "buffers", "byteLength", (json_int_t)l->bytes);
+    const char *name;
+    json_t *unused;
+    json_object_foreach(l->extensions, name, unused) add_to(l, used, NULL, json_string(name));
+    add_list(all, "materials", l->materials, l);
+    add_list(all, "images", l->images, l);
+    add_list(all, "textures", l->textures, l);
+    add_list(all, "samplers", l->samplers, l);
+    add_list(all, "extensionsUsed", used, l);
     json_decref(l->attributes);
-    int error = bad || !all;
-    if (all && json_array_size(list) > 0) /* the format has no empty lists */
-        error |= json_object_set(all, "materials", list);
-    if (all && json_array_size(images) > 0)
-        error |= json_object_set(all, "images", images) | json_object_set(all, "textures", textures);
-    json_decref(list);
-    json_decref(images);
-    json_decref(textures);
-    if (error) {
+    json_decref(l->extensions);
+    if (l->bad) {
         json_decref(all);
         return NULL;
     }
@@ -322,15 +442,21 @@ static void put_numbers(const mesh *m, bool mirrored, const glb_layout *l, FILE 
         for (size_t t = 0; l->by_slot[slot] && t < m->triangle_count && !cancel_asked_at(t); t++)
             for (int k = 0; (m->slots ? m->slots[t] : 0) == slot && k < 3; k++)
                 put_bits(corner_if(mirrored, &m->triangles[t], k), 4, stream);
+    for (int i = 0; l->looks && i < l->looks->image_count && !cancel_asked(); i++) {
+        const imported_image *one = &l->looks->images[i];
+        fwrite(one->bytes, 1, one->size, stream);
+        put_bits(0, (int)(filled_up(one->size) - one->size), stream);
+    }
 }
 
-static status write_glb(const mesh *m, const imported_material *materials, bool mirrored, FILE *stream, diagnostic *why)
+static status write_glb(const mesh *m, const mesh_import *looks, bool mirrored, const char *path, FILE *stream,
+                        diagnostic *why)
 {
     if (m->triangle_count == 0)
         return diagnose(why, STATUS_BAD_INPUT, "write another format", "a GLB file needs triangles");
-    glb_layout l;
-    json_t *document = glb_json(m, materials, mirrored, &l);
-    char *text = document ? json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    glb_layout l = {.looks = looks, .path = path ? path : ""};
+    json_t *document = glb_json(m, mirrored, &l);
+    char *text = document ? json_dumps(document, JSON_COMPACT) : NULL;
     json_decref(document);
     if (!text)
         return out_of_memory(why);
@@ -364,13 +490,13 @@ double mesh_rounding(const mesh *m)
     return most;
 }
 
-status mesh_write(const mesh *m, const imported_material *materials, mesh_format format, bool mirrored, FILE *stream,
-                  diagnostic *why)
+status mesh_write(const mesh *m, const mesh_import *looks, mesh_format format, bool mirrored, const char *path,
+                  FILE *stream, diagnostic *why)
 {
     switch (format) {
     case MESH_OBJ: write_obj(m, mirrored, stream); return STATUS_OK;
     case MESH_PLY: write_ply(m, mirrored, stream); return STATUS_OK;
-    case MESH_GLB: return write_glb(m, materials, mirrored, stream, why);
+    case MESH_GLB: return write_glb(m, looks, mirrored, path, stream, why);
     case MESH_FORMAT_COUNT: break;
     }
     return STATUS_OK;

@@ -434,6 +434,66 @@ run mesh two.obj -o two.glb
 check "mesh -o x.glb" is "$code $(cat err) $(python3 glb.py two.glb)" "0  $(lines \
     "red [1.0, 0.25, 0.5, 1.0] my%20paint.png None" '0,0,0 1,0,0 1,2,0 0,1 1,1 1,0.25' \
     'glass [0.0, 1.0, 0.0, 0.25] False BLEND' '0,0,0 1,2,0 0,2,-0.5 0,1 1,0.25 1,1')"
+# The looks of a GLB file by its film: images inside it and files of their own, each kind of alpha, emission and glass.
+cat >looks.py <<'END'
+import json, struct, zlib
+def png(*rows):
+    def chunk(kind, data):
+        return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+    return b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', 2, len(rows), 8, 6, 0, 0, 0)) + \
+        chunk(b'IDAT', zlib.compress(b''.join(b'\0' + bytes(r) for r in rows))) + chunk(b'IEND', b'')
+image = png([255, 40, 40, 255, 40, 255, 40, 60], [40, 40, 255, 140, 255, 255, 40, 220])
+open('f g.png', 'wb').write(image)
+corners = [(x, y) for x in range(6) for y in (0, 1)]
+data = b''.join(struct.pack('<3f', x, y, 0.25 * y) for x, y in corners) + \
+    b''.join(struct.pack('<2f', 2.5 * x, 1.75 * y) for x, y in corners) + \
+    b''.join(struct.pack('<6I', *(2 * k + i for i in (0, 2, 3, 0, 3, 1))) for k in range(5)) + \
+    image + bytes(-len(image) % 4)
+def accessor(view, kind, type, count, **more):
+    return {'bufferView': view, 'componentType': kind, 'type': type, 'count': count, **more}
+def look(texture, alpha, **more):
+    pbr = {'baseColorFactor': [0.9, 0.7, 0.8, alpha]}
+    return {'pbrMetallicRoughness': pbr if texture is None else {**pbr, 'baseColorTexture': {'index': texture}}, **more}
+j = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}], 'nodes': [{'mesh': 0}],
+     'buffers': [{'byteLength': len(data)}],
+     'bufferViews': [{'buffer': 0, 'byteOffset': at, 'byteLength': n}
+                     for at, n in ((0, 144), (144, 96), (240, 120), (360, len(image)))],
+     'accessors': [accessor(0, 5126, 'VEC3', 12, min=[0, 0, 0], max=[5, 1, 0.25]), accessor(1, 5126, 'VEC2', 12)] +
+                  [accessor(2, 5125, 'SCALAR', 6, byteOffset=24 * k) for k in range(5)],
+     'meshes': [{'primitives': [{'attributes': {'POSITION': 0, 'TEXCOORD_0': 1}, 'indices': 2 + k, 'material': k}
+                                for k in range(5)]}],
+     'images': [{'bufferView': 3, 'mimeType': 'image/png'}, {'uri': 'f%20g.png'}],
+     'samplers': [{'wrapS': 33071, 'wrapT': 33648, 'magFilter': 9728, 'minFilter': 9728}, {'minFilter': 9729}],
+     'textures': [{'source': 0, 'sampler': 0}, {'source': 1, 'sampler': 1}, {'source': 0}],
+     'extensionsUsed': ['KHR_materials_emissive_strength', 'KHR_materials_transmission'],
+     'materials': [look(0, 1, alphaMode='MASK', alphaCutoff=0.45), look(1, 0.6, alphaMode='BLEND'), look(2, 1),
+                   look(None, 1, emissiveFactor=[1, 0.5, 0.1],
+                        extensions={'KHR_materials_emissive_strength': {'emissiveStrength': 3}}),
+                   look(None, 1, extensions={'KHR_materials_transmission': {'transmissionFactor': 0.7}})]}
+text = json.dumps(j).encode()
+text += b' ' * (-len(text) % 4)
+open('looks.glb', 'wb').write(struct.pack('<4sIII4s', b'glTF', 2, 28 + len(text) + len(data), len(text), b'JSON') +
+                              text + struct.pack('<I4s', len(data), b'BIN\0') + data)
+END
+python3 looks.py
+look_film() { # look_film MESH
+    printf '%s\n' 'render: {width: 120, height: 40, depth: 4, transmission: simple}' "meshes: {m: {file: $1}}" \
+        'camera: {position: [2.5, 0.8, -5], target: [2.5, 0.5, 0]}' 'lights: {lamp: {position: [3, 5, -4]}}' \
+        'background: {color: [0.2, 0.3, 0.4]}' 'solids: {s: {shape: mesh, mesh: m}}' >looks.yaml
+    run render looks.yaml --json -o looks.png
+    echo "$code $(json film_hash)"
+}
+mkdir -p 'a b'
+run mesh looks.glb -o 'a b/looks.glb'
+check "mesh -o x.glb keeps the looks of a GLB file" is "$(look_film 'a b/looks.glb')" \
+    "0 $(look_film looks.glb | cut -c 3-)"
+check "mesh -o x.glb names an image from its own folder" grep -qaF '"uri":"../f%20g.png"' 'a b/looks.glb'
+for part in 'alphaMode":"MASK' 'alphaMode":"BLEND' 'mimeType":"image/png' 'wrapS":33071' 'emissiveStrength":3' \
+    'transmissionFactor":'; do
+    check "mesh -o x.glb writes $part" grep -qaF "$part" 'a b/looks.glb'
+done
+run mesh looks.glb -f glb
+check "mesh -f glb to standard output starts paths in the working folder" grep -qaF '"uri":"f%20g.png"' out
 run mesh --generate torus --around 5 --tube 4 -o torus.glb
 check "mesh -o x.glb says how far positions change" grep -qE \
     '^cuvette: note: GLB files have single precision: positions change by up to [1-9](\.[0-9])?e-0[78]' err
