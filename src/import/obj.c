@@ -308,6 +308,10 @@ static status assemble(obj_file *f)
 {
     uint64_t triangles = 0;
     for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++) {
+        if (o->colors)
+            flat_note(f->flat, "colours of vertices are ignored");
+        if (o->narrow)
+            flat_note(f->flat, "faces with fewer than three corners are left out");
         triangles += o->corner_count - 2 * o->face_count;
         f->flat->with_uvs |= o->highest.uv > 0;
         f->flat->with_normals |= o->highest.normal > 0;

@@ -35,6 +35,8 @@ typedef struct obj_part {
     size_t place_room, uv_room, normal_room, corner_room, size_room, event_room;
     size_t until;  /* parsing stops after that many faces; 0: at the end */
     bool relative; /* there are relative indices */
+    bool colors;   /* vertices have some */
+    bool narrow;   /* a face had fewer than three corners, and was left out */
     obj_corner highest;
     uint32_t line;     /* lines so far */
     bool no_memory;    /* parsing stopped */

@@ -110,6 +110,16 @@ static const form normal_form = {3,
                                  "a normal has fewer than three numbers",
                                  "give three finite numbers"};
 
+/* Whether three numbers follow, a colour; with a weight before them, or without. Moves past them. */
+static bool skip_color(obj_part *o, const char **at)
+{
+    int count = 0;
+    double unused;
+    for (*at = skip_blanks(o, *at); !is_end(**at) && number_scan(at, &unused); *at = skip_blanks(o, *at))
+        count++;
+    return count >= 3;
+}
+
 /* Reads the numbers of a statement. What follows them, such as the weight or colour of a place, is not used: x, y, z
  * are as written. */
 static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[3])
@@ -123,7 +133,12 @@ static const char *read_numbers(obj_part *o, const char *p, const form *f, doubl
         if (!number_scan(&p, &v[count]) || !(is_blank(*p) || is_end(*p) || *p == '\\') || fabs(v[count]) > f->far)
             return fail(o, word, f->word, f->remedy);
     }
-    return count < f->least ? fail(o, p, f->few, f->remedy) : skip_statement(o, skip_blanks(o, p));
+    if (count < f->least)
+        return fail(o, p, f->few, f->remedy);
+    p = skip_blanks(o, p);
+    if (f == &place_form && !o->colors)
+        o->colors = skip_color(o, &p);
+    return skip_statement(o, p);
 }
 
 /* Reads a place or a normal into its list. */
@@ -224,10 +239,12 @@ static const char *read_face(obj_part *o, const char *p)
             return fail(o, word, "a face has more than 65536 corners", "divide it into triangles");
     }
     const size_t count = o->corner_count - first;
-    if (count < 3) /* a point or a line */
+    if (count < 3) {
         o->corner_count = first;
-    else if (!add_face(o, (uint32_t)count))
+        o->narrow = true;
+    } else if (!add_face(o, (uint32_t)count)) {
         return no_memory(o);
+    }
     return next_line(o, p);
 }
 

@@ -49,9 +49,7 @@ static void a_triangle_is_read_in_every_form(void **state)
         THREE "f 1 \\\n2 \\\r\n3\n",
         "v 0 \\\n0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\\n",
         "v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 0.5\nf 1 2 3\n", /* weights: x, y, z are as written */
-        "v 0 0 0 1 .5 0\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n",
-        "v 0 0 0 nan nan nan\nv 1 0 0 red\nv 0 1 0 \\\n1 2 3\nf 1 2 3\n",
-        "v 0 0 0 1 1 .5 0\nv 1 0 0 1 0 0 0\nv 0 1 0 1 1 1 1\nf 1 2 3\n",
+        "v 0 0 0 nan nan nan\nv 1 0 0 red\nv 0 1 0 \\\n1 2 # 3\nf 1 2 3\n",
         "v -0 0.0 .0\nv +1. 0e5 0\nv 0 10e-1 -0e-9\nf 1 2 3\n",
         "v 0 0 0\n" THREE "f 2 3 4\n",
         THREE "vt 0\nvt 1 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/1\n",
@@ -59,7 +57,7 @@ static void a_triangle_is_read_in_every_form(void **state)
         THREE "f 1/ 2/ 3/\n",
         THREE "f 1// 2// 3//\n",
         THREE "vt 0 0\nf 1/-1/ 2/-1 3\n",
-        THREE "l 1 2\np 1\nf 1 2\nf 1 2 3\ng a b\no c\ns off\nvp 1 2\ncstype bezier\nunknown x \\\nf 1 1 1\n",
+        THREE "l 1 2\np 1\nf 1 2 3\ng a b\no c\ns off\nvp 1 2\ncstype bezier\nunknown x \\\nf 1 1 1\n",
         "mtllib\n" THREE "usemtl\nf 1 2 3\n",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -291,9 +289,11 @@ static void statements_of_a_library_are_read_or_ignored(void **state)
     mesh_import_destroy(got);
 }
 
-static void missing_normals_and_texture_coordinates_are_notes(void **state)
+static void what_faces_and_vertices_lose_is_a_note(void **state)
 {
     (void)state;
+    static const char colors[] = "colours of vertices are ignored",
+                      narrow[] = "faces with fewer than three corners are left out";
     static const struct {
         const char *text, *note;
         bool normals, uvs;
@@ -304,7 +304,13 @@ static void missing_normals_and_texture_coordinates_are_notes(void **state)
         {THREE "vn 0 0 1\nvt 0 1\nf 1/1/1 2/2/1 3/1/3\n",
          "faces refer to texture coordinates that the file lacks: these are left out; faces refer to normals that the "
          "file lacks: these are left out",
-         true, true}};
+         true, true},
+        {"v 0 0 0 1 .5 0\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n", colors, false, false},
+        {"v 0 0 0 1\nv 1 0 0 1 0 0 0\nv 0 1 0 \\\n1 1 1 \\\n1\nf 1 2 3\n", colors, false, false},
+        {"v 0 0 0\nv 1 0 0 \\\n1 2 3\nv 0 1 0\nf 1 2 3\n", colors, false, false},
+        {THREE "f 1 2 3\nf\n", narrow, false, false},
+        {THREE "f 1\nf 1 2 3\n", narrow, false, false},
+        {THREE "f 1 2 #3\nf 1 2 3\nl 1 2\n", narrow, false, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         mesh_import *got = read_text("lacking.obj", cases[i].text);
         assert_triangles(got, (const double[9]){0, 0, 0, 1, 0, 0, 0, 1, 0}, 1, cases[i].text);
@@ -519,7 +525,7 @@ int main(void)
         cmocka_unit_test(unusual_polygons_keep_their_triangles),
         cmocka_unit_test(several_libraries_are_read),
         cmocka_unit_test(statements_of_a_library_are_read_or_ignored),
-        cmocka_unit_test(missing_normals_and_texture_coordinates_are_notes),
+        cmocka_unit_test(what_faces_and_vertices_lose_is_a_note),
         cmocka_unit_test(map_d_blends_if_it_is_the_image_of_map_Kd),
         cmocka_unit_test(missing_libraries_and_images_are_notes),
         cmocka_unit_test(large_files_are_read_as_written),
