@@ -19,6 +19,7 @@ typedef struct library {
     const char *name; /* as in the mesh file */
     lines text;
     mtl_library *into;
+    bool d_given; /* for the last material */
     flat_mesh *flat;
     diagnostic *why;
 } library;
@@ -121,6 +122,23 @@ static mesh_material default_material(void)
     return (mesh_material){.values = {.diffuse = {0.6, 0.6, 0.6}, .opacity = 1, .ior = 1, .flags = MESH_WIRE_GIVEN}};
 }
 
+/* Ends a material, once all its statements have been read: decides on alpha. Programs that mean the opacity by Tr write
+ * Tr 1 for what is opaque, and nobody gives an image to what cannot be seen. */
+static void end_material(library *l, mesh_material *m)
+{
+    if (m->texture && m->values.opacity == 0 && !l->d_given) {
+        m->values.opacity = 1;
+        flat_note(l->flat, "Tr 1 of material '%.100s' is taken for opaque, as some programs mean it", m->name);
+    }
+    if (m->cover && m->texture && strcmp(m->cover, m->texture) == 0)
+        m->values.alpha_mode = MESH_WIRE_ALPHA_BLEND;
+    else if (m->cover)
+        flat_note(l->flat, "map_d of the material '%.100s' is not read: only the alpha of the image of map_Kd is",
+                  m->name);
+    free(m->cover);
+    m->cover = NULL;
+}
+
 static status new_material(library *l)
 {
     const char *name;
@@ -132,6 +150,7 @@ static status new_material(library *l)
     if (!GROW(m->list, m->room, m->count + 1))
         return no_memory_for(l->req, l->why);
     m->list[m->count] = default_material();
+    l->d_given = false;
     m->list[m->count].name = strndup(name, length);
     return m->list[m->count++].name ? STATUS_OK : no_memory_for(l->req, l->why);
 }
@@ -151,6 +170,7 @@ static status read_statement(library *l, const char *word, size_t length, mesh_m
         return read_number(l, "Ns", &v->shininess);
     if (lines_is(word, length, "Ni"))
         return read_number(l, "Ni", &v->ior);
+    l->d_given |= lines_is(word, length, "d");
     if (lines_is(word, length, "d"))
         return read_number(l, "d", &v->opacity);
     if (lines_is(word, length, "map_Kd"))
@@ -165,18 +185,6 @@ static status read_statement(library *l, const char *word, size_t length, mesh_m
     return STATUS_OK;
 }
 
-/* Decides on alpha, when all statements of a material have been read. */
-static void find_alpha(library *l, mesh_material *m)
-{
-    if (m->cover && m->texture && strcmp(m->cover, m->texture) == 0)
-        m->values.alpha_mode = MESH_WIRE_ALPHA_BLEND;
-    else if (m->cover)
-        flat_note(l->flat, "map_d of the material '%.100s' is not read: only the alpha of the image of map_Kd is",
-                  m->name);
-    free(m->cover);
-    m->cover = NULL;
-}
-
 static status read_text(library *l)
 {
     const char *word;
@@ -185,13 +193,17 @@ static status read_text(library *l)
     do {
         if (!lines_word(&l->text, &word, &length))
             continue;
-        if (lines_is(word, length, "newmtl"))
+        const bool begun = l->into->count > first;
+        if (lines_is(word, length, "newmtl")) {
+            if (begun)
+                end_material(l, &l->into->list[l->into->count - 1]);
             TRY(new_material(l));
-        else if (l->into->count > first)
+        } else if (begun) {
             TRY(read_statement(l, word, length, &l->into->list[l->into->count - 1]));
+        }
     } while (lines_next(&l->text));
-    for (size_t i = first; i < l->into->count; i++)
-        find_alpha(l, &l->into->list[i]);
+    if (l->into->count > first)
+        end_material(l, &l->into->list[l->into->count - 1]);
     return STATUS_OK;
 }
 

@@ -336,6 +336,31 @@ static void map_d_blends_if_it_is_the_image_of_map_Kd(void **state)
     mesh_import_destroy(got);
 }
 
+/* Of materials with an image, in one library. */
+static void Tr_1_of_an_image_is_opaque(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *statements;
+        double opacity;
+    } cases[] = {{"map_Kd leaf.png\nTr 1.000000\n", 1}, {"Tr 1\nmap_Kd leaf.png\n", 1},
+                 {"map_Kd leaf.png\nTr 0.75\n", 0.25},  {"Tr 1\n", 0},
+                 {"map_Kd leaf.png\nd 0\nTr 1\n", 0},   {"map_Kd leaf.png\nd 0\n", 0}};
+    put_text("leaf.png", "an image");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char *text = text_format("newmtl a\nd 1\nnewmtl m\n%snewmtl b\nd 1\n", cases[i].statements);
+        put_text("tr.mtl", text);
+        free(text);
+        mesh_import *got = read_text("tr.obj", "mtllib tr.mtl\n" THREE "usemtl m\nf 1 2 3\n");
+        assert_true(got->materials[0].opacity == cases[i].opacity);
+        if (i < 2)
+            assert_string_equal(got->note, "Tr 1 of material 'm' is taken for opaque, as some programs mean it");
+        else
+            assert_null(got->note);
+        mesh_import_destroy(got);
+    }
+}
+
 static void missing_libraries_and_images_are_notes(void **state)
 {
     (void)state;
@@ -527,6 +552,7 @@ int main(void)
         cmocka_unit_test(statements_of_a_library_are_read_or_ignored),
         cmocka_unit_test(what_faces_and_vertices_lose_is_a_note),
         cmocka_unit_test(map_d_blends_if_it_is_the_image_of_map_Kd),
+        cmocka_unit_test(Tr_1_of_an_image_is_opaque),
         cmocka_unit_test(missing_libraries_and_images_are_notes),
         cmocka_unit_test(large_files_are_read_as_written),
         cmocka_unit_test(files_are_not_divided_within_a_continued_line),
