@@ -58,6 +58,8 @@ typedef struct ply {
 
 static const char repair[] = "repair the file or export it again";
 
+#define TEXTURE_NOTE "the texture that the file names, and texture coordinates of faces, are not read"
+
 /* --- the header --- */
 
 static status bad(const ply *p, const char *what)
@@ -120,6 +122,26 @@ static status read_element(ply *p)
     return STATUS_OK;
 }
 
+/* Notes a property of looks that is not read. */
+static void note_unread(const ply *p, const ply_element *e, const ply_property *of, const char *word, size_t length)
+{
+    static const char *const colors[] = {"red", "green", "blue", "diffuse_red", "diffuse_green", "diffuse_blue"};
+    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+        if (e->kind == PLY_VERTEX && lines_is(word, length, colors[i]))
+            flat_note(p->flat, "colours of vertices are ignored");
+    if (e->kind == PLY_FACE && of->count != PLY_NONE && lines_is(word, length, "texcoord"))
+        flat_note(p->flat, TEXTURE_NOTE);
+}
+
+/* A comment, in which a program may have named its texture. */
+static void read_comment(ply *p)
+{
+    const char *word;
+    size_t length;
+    if (lines_word(&p->text, &word, &length) && lines_is(word, length, "TextureFile"))
+        flat_note(p->flat, TEXTURE_NOTE);
+}
+
 static status read_property(ply *p)
 {
     const char *word;
@@ -142,6 +164,7 @@ static status read_property(ply *p)
         parsed.number = number_named(word, length);
     parsed.corners = (e->kind == PLY_FACE || e->kind == PLY_STRIP) && parsed.count != PLY_NONE &&
                      (lines_is(word, length, "vertex_indices") || lines_is(word, length, "vertex_index"));
+    note_unread(p, e, &parsed, word, length);
     e->properties[e->property_count++] = parsed;
     return STATUS_OK;
 }
@@ -192,6 +215,8 @@ static status read_header(ply *p)
             end_header(p);
             return STATUS_OK;
         }
+        if (lines_is(word, length, "comment"))
+            read_comment(p);
         format |= lines_is(word, length, "format");
         TRY(lines_is(word, length, "format")     ? read_format(p)
             : lines_is(word, length, "element")  ? read_element(p)

@@ -77,6 +77,36 @@ static void what_a_line_has_beyond_the_header_is_left_out(void **state)
     check_square(got, "beyond.ply");
 }
 
+#define TEXTURE_NOTE "the texture that the file names, and texture coordinates of faces, are not read"
+#define COLOR_NOTE "colours of vertices are ignored"
+
+static void looks_that_are_not_read_are_notes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *note;
+    } cases[] = {
+        {ASCII "comment made by x, TextureFile\nelement vertex 4\n" XYZ FACE "end_header\n" CORNERS "4 0 1 2 3\n",
+         NULL},
+        {ASCII "comment TextureFile a.png\nelement vertex 4\n" XYZ FACE "end_header\n" CORNERS "4 0 1 2 3\n",
+         TEXTURE_NOTE},
+        {ASCII "element vertex 4\n" XYZ FACE "property list uchar float texcoord\nend_header\n" CORNERS "4 0 1 2 3 0\n",
+         TEXTURE_NOTE},
+        {ASCII "element vertex 4\n" XYZ "property uchar red\nproperty uchar green\nproperty uchar blue\n" FACE
+               "end_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n",
+         COLOR_NOTE},
+        {ASCII "element vertex 4\n" XYZ FACE "property uchar red\nend_header\n" CORNERS "4 0 1 2 3 9\n", NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        mesh_import *got = read_text("looks.ply", cases[i].text);
+        if (cases[i].note)
+            assert_string_equal(got->note, cases[i].note);
+        else
+            assert_null(got->note);
+        check_square(got, cases[i].text);
+    }
+}
+
 static void add_number(bytes *b, double value, int size, bool big)
 {
     unsigned char at[8];
@@ -410,6 +440,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ply_texts_are_read_in_every_form),
         cmocka_unit_test(what_a_line_has_beyond_the_header_is_left_out),
+        cmocka_unit_test(looks_that_are_not_read_are_notes),
         cmocka_unit_test(binary_ply_files_are_read_in_every_form),
         cmocka_unit_test(ply_numbers_are_doubles),
         cmocka_unit_test(normals_and_texture_coordinates_are_read),
