@@ -104,12 +104,13 @@ uint32_t gltf_accessor_index(const gltf_accessor *a, size_t element);
 typedef struct gltf_uv_map {
     uint64_t set;
     double m[6];
+    bool textured; /* there is such a texture */
 } gltf_uv_map;
 
 /* Of a material, -1 for none. */
 status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out);
-/* Makes the slot of a material, -1 for none, whose colour is multiplied by a tint. */
-status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], uint8_t *slot);
+/* Makes the slot of a material, -1 for none, whose colour is multiplied by a tint; with its texture or without it. */
+status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], bool textured, uint8_t *slot);
 
 /* Adds the camera and the light of a node at its place. */
 status gltf_views(const gltf_file *g, gltf_item node, const gltf_affine *place);

@@ -26,6 +26,7 @@ status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out)
         return STATUS_OK;
     const gltf_item of = gltf_at(g, "materials", (size_t)index);
     const json_t *texture = base_texture(of), *moved = gltf_extension(texture, "KHR_texture_transform");
+    out->textured = texture != NULL;
     TRY(gltf_whole(g, of, texture, "texCoord", UINT32_MAX, 0, &out->set));
     if (!moved)
         return STATUS_OK;
@@ -205,27 +206,29 @@ static void note_ignored(const gltf_file *g, gltf_item of)
         flat_note(g->flat, "images of normals, occlusion, metalness and roughness are ignored");
 }
 
-static status read_material(gltf_file *g, gltf_item of, const double tint[3], mesh_wire_material *m, char **path)
+static status read_material(gltf_file *g, gltf_item of, const double tint[3], bool textured, mesh_wire_material *m,
+                            char **path)
 {
     double color[4] = {1, 1, 1, 1};
     m->flags = MESH_WIRE_GIVEN;
     TRY(gltf_numbers(g, of, json_object_get(of.json, "pbrMetallicRoughness"), "baseColorFactor", 4, color));
     for (int c = 0; c < 3; c++)
         m->diffuse[c] = color[c] * tint[c];
-    TRY(read_texture(g, of, m, path));
+    if (textured)
+        TRY(read_texture(g, of, m, path));
     TRY(read_alpha(g, of, color[3], *path || m->image, m));
     TRY(read_emission(g, of, m));
     note_ignored(g, of);
     return read_glass(g, of, m);
 }
 
-status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], uint8_t *slot)
+status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], bool textured, uint8_t *slot)
 {
     mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = USUAL_IOR, .attenuation_color = {1, 1, 1}};
     const gltf_item of = index < 0 ? (gltf_item){0} : gltf_at(g, "materials", (size_t)index);
     const char *name = json_string_value(json_object_get(of.json, "name"));
     char *path = NULL;
-    status code = index < 0 ? STATUS_OK : read_material(g, of, tint, &m, &path);
+    status code = index < 0 ? STATUS_OK : read_material(g, of, tint, textured, &m, &path);
     THEN(code, flat_material(g->req, g->flat, &m, name, path, slot, g->why));
     free(path);
     return code;

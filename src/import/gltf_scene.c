@@ -31,7 +31,7 @@ typedef struct walk {
     gltf_file *g;
     joiner join;
     uint64_t triangles, vertices; /* counted by the first traversal */
-    tinted *used;                 /* by material; the last: none */
+    tinted *used;                 /* by look_of */
     uint8_t *slot_of;
     bool *visited;      /* by node */
     gltf_affine *world; /* by node: its transform, after the first traversal */
@@ -264,6 +264,19 @@ static status find_tint(gltf_file *g, const primitive *p, double tint[3], bool *
     return STATUS_OK;
 }
 
+/* The number of a primitive's look, of two for each material and for none: the second is without the texture, for
+ * primitives that lack its coordinates. */
+static size_t look_of(const gltf_file *g, const primitive *p)
+{
+    const size_t material = p->material < 0 ? gltf_count(g, "materials") : (size_t)p->material;
+    return 2 * material + (p->map.textured && !p->uvs.count);
+}
+
+static size_t look_count(const gltf_file *g)
+{
+    return 2 * gltf_count(g, "materials") + 2;
+}
+
 static status count_primitive(walk *w, const primitive *p, size_t node)
 {
     (void)node;
@@ -275,7 +288,9 @@ static status count_primitive(walk *w, const primitive *p, size_t node)
     g->flat->with_normals |= p->normals.count > 0;
     g->flat->with_uvs |= p->uvs.count > 0;
     TRY(find_tint(g, p, tint, &one));
-    tinted *m = &w->used[p->material < 0 ? gltf_count(g, "materials") : (size_t)p->material];
+    if (p->map.textured && !p->uvs.count)
+        flat_note(g->flat, "a texture whose coordinates the mesh lacks is left out");
+    tinted *m = &w->used[look_of(g, p)];
     if (!one || (m->used && memcmp(tint, m->tint, sizeof tint) != 0)) {
         memcpy(tint, (double[3]){1, 1, 1}, sizeof tint);
         flat_note(g->flat, "colours of vertices are ignored where they differ within a material");
@@ -287,13 +302,14 @@ static status count_primitive(walk *w, const primitive *p, size_t node)
 
 static status number_slots(walk *w)
 {
-    const size_t count = gltf_count(w->g, "materials");
-    w->slot_of = calloc(count + 1, 1);
+    const size_t count = look_count(w->g);
+    w->slot_of = calloc(count, 1);
     if (!w->slot_of)
         return no_memory_for(w->g->req, w->g->why);
-    for (size_t i = 0; i <= count; i++)
+    for (size_t i = 0; i < count; i++)
         if (w->used[i].used)
-            TRY(gltf_material_slot(w->g, i < count ? (int64_t)i : -1, w->used[i].tint, &w->slot_of[i]));
+            TRY(gltf_material_slot(w->g, i + 2 < count ? (int64_t)(i / 2) : -1, w->used[i].tint, i % 2 == 0,
+                                   &w->slot_of[i]));
     return STATUS_OK;
 }
 
@@ -506,7 +522,7 @@ static status join_used(walk *w, const primitive *p, const placement *at, uint32
 static status append_triangles(walk *w, const primitive *p, const placement *at, const uint32_t *index)
 {
     flat_mesh *flat = w->g->flat;
-    const uint8_t slot = w->slot_of[p->material < 0 ? gltf_count(w->g, "materials") : (size_t)p->material];
+    const uint8_t slot = w->slot_of[look_of(w->g, p)];
     for (uint64_t t = 0; t < p->triangles; t++) {
         uint32_t c[3];
         TRY(triangle_corners(w->g, p, t, c));
@@ -543,7 +559,7 @@ static status read_scene(walk *w)
     uint32_t *parent_plus_1 = calloc(nodes + 1, sizeof *parent_plus_1);
     w->visited = calloc(nodes + 1, sizeof *w->visited);
     w->world = malloc((nodes + 1) * sizeof *w->world);
-    w->used = calloc(gltf_count(g, "materials") + 1, sizeof *w->used);
+    w->used = calloc(look_count(g), sizeof *w->used);
     status code = parent_plus_1 && w->visited && w->world && w->used ? find_parents(g, parent_plus_1)
                                                                      : no_memory_for(g->req, g->why);
     THEN(code, visit_all(w, parent_plus_1, count_primitive));

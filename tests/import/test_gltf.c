@@ -451,6 +451,31 @@ static void colors_of_vertices_are_the_materials(void **state)
 #define TEXTURED(info) "'pbrMetallicRoughness':{'baseColorTexture':{'index':0" info "}}"
 #define INSIDE ",'textures':[{'source':0,'sampler':0}],'images':[{'bufferView':3,'mimeType':'image/png'}],'samplers':[{"
 
+/* Two primitives of one material, of which only the first has texture coordinates. */
+static void a_texture_without_coordinates_is_left_out(void **state)
+{
+    (void)state;
+    bytes b = three();
+    add_floats(&b, (float[6]){0.25F, 0.5F, 0, 0, 1, 1}, 6);
+    add(&b, "\x89PNG\r\n\x1a\n12", 10);
+    mesh_import *got = read_document(
+        DOCUMENT(ONE_NODE,
+                 "{'attributes':{'POSITION':0,'TEXCOORD_0':1},'material':0},{'attributes':{'POSITION':0},'material':0}",
+                 POSITIONS "," ACCESSOR(1, 5126, 3, "VEC2"), VIEW(0, 36) "," VIEW(36, 24) "," VIEW(60, 10),
+                 ",'materials':[{'name':'a','pbrMetallicRoughness':{'baseColorFactor':[0.5,1,1,1],"
+                 "'baseColorTexture':{'index':0}}}],'textures':[{'source':0}],"
+                 "'images':[{'bufferView':2,'mimeType':'image/png'}]"),
+        b);
+    assert_int_equal(got->material_count, 2);
+    const imported_material *with = &got->materials[got->mesh->slots[0]],
+                            *without = &got->materials[got->mesh->slots[1]];
+    assert_true(with->image == 1 && without->image == 0 && !without->texture);
+    assert_true(with->color[0] == 0.5 && without->color[0] == 0.5);
+    assert_string_equal(without->name, "a");
+    assert_string_equal(got->note, "a texture whose coordinates the mesh lacks is left out");
+    mesh_import_destroy(got);
+}
+
 static void images_inside_the_file_are_carried(void **state)
 {
     (void)state;
@@ -570,6 +595,7 @@ int main(void)
         cmocka_unit_test(small_files_need_little_memory),
         cmocka_unit_test(alpha_has_a_mode),
         cmocka_unit_test(colors_of_vertices_are_the_materials),
+        cmocka_unit_test(a_texture_without_coordinates_is_left_out),
         cmocka_unit_test(images_inside_the_file_are_carried),
         cmocka_unit_test(texture_coordinates_are_chosen_and_moved),
         cmocka_unit_test(glass_has_its_numbers),
