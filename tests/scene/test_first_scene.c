@@ -51,15 +51,17 @@ static void the_camera_is_that_of_the_file(void **state)
 {
     (void)state;
     char *notes;
-    scene *s = scene_of("{'camera':0,'translation':[0,0.5,4],'rotation':[0,0,1,1]},{'camera':0}", "'doubleSided':true",
-                        ",'cameras':[{'perspective':{'yfov':0.5,'aspectRatio':2}}]", &notes);
+    scene *s = scene_of(
+        "{'camera':0,'translation':[0,0.5,4],'rotation':[0,0,1,1]},{'camera':0,'children':[3]},{'camera':1}",
+        "'doubleSided':true", ",'cameras':[{'perspective':{'yfov':0.5,'aspectRatio':2}},{'name':'side'}]", &notes);
     const camera_frame f = camera_frame_of(s);
     assert_near(f.eye, 0, 0.5, -4);
     assert_near(f.forward, 0, 0, 1);
     assert_near(f.up, -1, 0, 0);
     assert_true(fabs(f.half_height - tan(0.25)) < 1e-12);
     assert_int_equal(s->render.width, 2 * s->render.height);
-    assert_non_null(strstr(notes, "a scene has one camera"));
+    assert_non_null(strstr(notes, "a scene has one camera: camera 2, which has no name, is left out"));
+    assert_non_null(strstr(notes, "a scene has one camera: 'side' is left out"));
     scene_destroy(s);
     free(notes);
 }

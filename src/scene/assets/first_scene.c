@@ -168,11 +168,13 @@ static void add_cameras(first_scene *f)
         const mesh_wire_view *v = f->from->views[i].values;
         if (v->kind > MESH_WIRE_ORTHOGRAPHIC)
             continue;
+        const char *name = f->from->views[i].name;
         if (count++ == 0)
             set_camera(f, v);
+        else if (name && *name)
+            note(f, "a scene has one camera: '%.60s' is left out", name);
         else
-            note(f, "a scene has one camera: '%.60s' is left out",
-                 f->from->views[i].name ? f->from->views[i].name : "");
+            note(f, "a scene has one camera: camera %d, which has no name, is left out", count);
     }
     if (count == 0)
         look_from_front(f);
