@@ -15,8 +15,11 @@
 #include <zlib.h>
 
 enum {
-    MAPPED_MIN = 1 << 20, /* bytes; smaller files are read */
-    UNKNOWN_MAX = 1 << 16 /* bytes of a file of /proc, whose size is 0 */
+    MAPPED_MIN = 1 << 20,  /* bytes; smaller files are read */
+    UNKNOWN_MAX = 1 << 16, /* bytes of a file of /proc, whose size is 0 */
+    SUSPECT = 1 << 26,     /* expanded bytes of a small file that can take long; those of meshes are 3 to 30 times */
+    SUSPECT_TIMES = 100,   /* the compressed ones */
+    CHECKED = 1 << 16      /* expanded bytes that are enough for plain_check */
 };
 
 /* --- files --- */
@@ -124,72 +127,115 @@ static int read_all(int fd, size_t size, file_text *text)
 
 /* --- compressed files: RFC 1952 --- */
 
-static bool is_compressed(const char *bytes, size_t size)
+bool files_compressed(const char *bytes, size_t size)
 {
     return size >= 18 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0; /* the size of an empty member; deflate */
 }
 
-/* Fills *out, which grows until memory ends: the importer's is limited, and a small file can have a large text. Returns
- * an errno, or 0. */
-static int inflate_all(z_stream *z, file_text *out, size_t room)
+/* What is being read: for the checks and the errors. most: bytes that a compressed file may expand to. */
+typedef struct reading {
+    const request *req;
+    file_kind kind;
+    size_t most;
+    diagnostic *why;
+} reading;
+
+static status expands_too_far(const reading *r, size_t compressed)
 {
+    return diagnose(r->why, STATUS_BAD_INPUT, "raise --memory-limit, or use a mesh with fewer triangles",
+                    "its %.3g MB expand to more than %.0f MB, a quarter of the memory that reading it may take",
+                    1e-6 * (double)compressed, 1e-6 * (double)r->most);
+}
+
+/* Fills *out, which grows up to the limit. What has been expanded is checked on the way: a small file can have a large
+ * text. */
+static status inflate_all(z_stream *z, const reading *r, file_text *out, size_t room)
+{
+    const size_t compressed = z->avail_in;
     for (int code = Z_OK;;) {
         if (out->size + 2 >= room) {
-            char *more = room > SIZE_MAX / 4 ? NULL : realloc(out->bytes, 2 * room);
-            if (!more)
-                return ENOMEM;
-            out->bytes = more;
-            room *= 2;
+            const size_t more = room < r->most / 2 ? 2 * room : r->most + 3;
+            char *bytes = realloc(out->bytes, more);
+            if (!bytes)
+                return no_memory_for(r->req, r->why);
+            out->bytes = bytes;
+            room = more;
         }
-        const size_t left = room - out->size - 2;
-        const uInt part = left < 1 << 24 ? (uInt)left : 1 << 24;
+        const size_t left = room - out->size - 2, chunk = out->size < CHECKED ? CHECKED : 1 << 24;
+        const uInt part = (uInt)(left < chunk ? left : chunk);
         z->next_out = (Bytef *)out->bytes + out->size;
         z->avail_out = part;
         code = inflate(z, Z_NO_FLUSH);
         out->size += part - z->avail_out;
+        if (out->size >= CHECKED)
+            TRY(plain_check(r->kind, out->bytes, out->size, false, r->why));
+        if (out->size > r->most)
+            return expands_too_far(r, compressed);
+        if (out->size > SUSPECT && out->size / SUSPECT_TIMES > compressed - z->avail_in)
+            return diagnose(r->why, STATUS_BAD_INPUT, "if it is a mesh all the same, expand it first",
+                            "its first %.3g MB expand to %.0f MB, over %d times as much, as no mesh does",
+                            1e-6 * (double)(compressed - z->avail_in), 1e-6 * (double)out->size, (int)SUSPECT_TIMES);
         if (code == Z_STREAM_END) { /* members can follow one another */
-            if (!is_compressed((const char *)z->next_in, z->avail_in))
+            if (!files_compressed((const char *)z->next_in, z->avail_in))
                 break;
             code = inflateReset(z);
         }
         if (code == Z_MEM_ERROR)
-            return ENOMEM;
+            return no_memory_for(r->req, r->why);
         if (code != Z_OK)
-            return EBADMSG;
+            return diagnose(r->why, STATUS_BAD_INPUT, "check that the file is complete, or compress it again",
+                            "the compressed file is damaged");
     }
     memcpy(out->bytes + out->size, "\n", 2);
-    return 0;
+    return STATUS_OK;
+}
+
+static status inflate_text(const file_text *text, const reading *r, file_text *plain)
+{
+    enum { GZIP = 16 + MAX_WBITS };
+    const size_t room = text->size < r->most / 4 ? 4 * text->size : r->most + 3;
+    z_stream z = {.next_in = (Bytef *)text->bytes, .avail_in = (uInt)text->size};
+    if (text->size > UINT_MAX)
+        return diagnose(r->why, STATUS_BAD_INPUT, "expand it", "the compressed file is larger than 4 GB");
+    plain->bytes = malloc(room);
+    if (!plain->bytes || inflateInit2(&z, GZIP) != Z_OK)
+        return no_memory_for(r->req, r->why);
+    const status code = inflate_all(&z, r, plain, room);
+    inflateEnd(&z);
+    return code;
 }
 
 /* Replaces a compressed text. */
-static int decompress(file_text *text)
+static status decompress(file_text *text, const reading *r)
 {
-    enum { GZIP = 16 + MAX_WBITS };
-    const size_t room = 4 * text->size;
-    file_text plain = {.bytes = malloc(room)};
-    z_stream z = {.next_in = (Bytef *)text->bytes, .avail_in = (uInt)text->size};
-    int error = text->size > UINT_MAX ? EFBIG : plain.bytes && inflateInit2(&z, GZIP) == Z_OK ? 0 : ENOMEM;
-    if (!error) {
-        error = inflate_all(&z, &plain, room);
-        inflateEnd(&z);
-    }
+    file_text plain = {0};
+    const status code = inflate_text(text, r, &plain);
     files_release(text);
-    if (error)
-        free(plain.bytes);
-    else
-        *text = plain;
-    return error;
+    *text = plain;
+    return code;
 }
 
-int files_read(int fd, file_text *text)
+status files_read(const request *req, int fd, file_kind kind, file_text *text, diagnostic *why)
 {
+    const uint64_t quarter = req->memory_mib << 18, all = SIZE_MAX / 2;
+    const reading r = {req, kind, (size_t)(quarter && quarter < all ? quarter : all), why};
     struct stat about;
     *text = (file_text){0};
     int error = fstat(fd, &about) == 0 ? 0 : errno;
     if (!error && !map(fd, (size_t)about.st_size, text))
         error = read_all(fd, (size_t)about.st_size, text);
     close(fd);
-    return !error && is_compressed(text->bytes, text->size) ? decompress(text) : error;
+    if (error == ENOMEM)
+        return no_memory_for(req, why);
+    if (error)
+        return system_error(why, STATUS_BAD_INPUT, NULL, "cannot read", error, "give a readable mesh file");
+    status code = STATUS_OK;
+    if (files_compressed(text->bytes, text->size))
+        code = decompress(text, &r);
+    THEN(code, plain_check(kind, text->bytes, text->size, true, why));
+    if (code != STATUS_OK)
+        files_release(text);
+    return code;
 }
 
 void files_release(file_text *text)

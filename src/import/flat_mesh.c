@@ -12,9 +12,10 @@ status no_memory_for(const request *req, diagnostic *why)
 {
     if (!req->memory_mib)
         return out_of_memory(why);
-    return diagnose_at(why, req->path, STATUS_BAD_INPUT,
-                       "use a mesh of less detail, or export the file again if it is damaged",
-                       "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
+    const bool large = req->memory_mib % 1024 == 0;
+    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "raise --memory-limit, or use a mesh with fewer triangles",
+                       "the file needs more memory than the %llu %s that reading it may take",
+                       (unsigned long long)(large ? req->memory_mib / 1024 : req->memory_mib), large ? "GiB" : "MiB");
 }
 
 /* --- vertices --- */

@@ -11,7 +11,17 @@
 #include <stdint.h>
 #include <stdio.h>
 
-typedef enum file_kind { FILE_OBJ, FILE_PLY, FILE_STL, FILE_GLTF, FILE_GLB, FILE_UNKNOWN } file_kind;
+/* Mesh files by their endings, then the files that they name: MTL files, and buffers of glTF files. */
+typedef enum file_kind {
+    FILE_OBJ,
+    FILE_PLY,
+    FILE_STL,
+    FILE_GLTF,
+    FILE_GLB,
+    FILE_UNKNOWN,
+    FILE_MTL,
+    FILE_BUFFER
+} file_kind;
 
 typedef struct request {
     const char *path;

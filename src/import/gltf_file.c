@@ -106,18 +106,11 @@ static uint32_t word_at(const char *text, size_t at)
     return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-static status other_ending(const gltf_file *g, const char *what)
-{
-    return diagnose(g->why, STATUS_BAD_INPUT, "name a JSON file .gltf and a binary glTF file .glb", "%s", what);
-}
-
 /* Finds the chunks of a binary file; others than the first two kinds are ignored. */
 static status open_binary(gltf_file *g, const char **text, size_t *size)
 {
     const char *file = *text, *json = NULL;
     size_t end = *size, json_size = 0;
-    if (end < 4 || memcmp(file, "glTF", 4) != 0)
-        return other_ending(g, "a binary glTF file begins with 'glTF'");
     if (end < HEADER_BYTES || word_at(file, 8) > end)
         return diagnose(g->why, STATUS_BAD_INPUT, GLTF_REPAIR, "the file is cut short: it has %zu bytes of %lu", end,
                         end < HEADER_BYTES ? (unsigned long)HEADER_BYTES : (unsigned long)word_at(file, 8));
@@ -214,8 +207,6 @@ status gltf_open(gltf_file *g, const char *text, size_t size)
 {
     if (g->req->kind == FILE_GLB)
         TRY(open_binary(g, &text, &size));
-    else if (size >= 4 && memcmp(text, "glTF", 4) == 0)
-        return other_ending(g, "this is a binary glTF file");
     TRY(parse(g, text, size));
     TRY(check_version(g));
     TRY(check_extensions(g));
@@ -286,8 +277,8 @@ static status read_file(const gltf_file *g, gltf_item of, const char *uri, file_
     else if (fd < 0)
         code = diagnose(g->why, STATUS_BAD_INPUT, "put this file where the mesh file expects it, or export both again",
                         "needs the file '%.200s': %s", name, reason);
-    else if (files_read(fd, text) != 0)
-        code = no_memory_for(g->req, g->why);
+    else
+        code = files_read(g->req, fd, FILE_BUFFER, text, g->why);
     free(name);
     return code;
 }

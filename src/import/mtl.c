@@ -240,10 +240,12 @@ static status read_library(library *l, bool *missing)
                         "put this file where the mesh file expects it, or remove the line that names it",
                         "needs the file '%.200s': %s", l->name, reason);
     file_text text;
-    if (files_read(fd, &text) != 0)
-        return no_memory_for(l->req, l->why);
+    diagnostic fault = {0};
+    status code = files_read(l->req, fd, FILE_MTL, &text, &fault);
+    if (code != STATUS_OK)
+        return diagnose(l->why, code, fault.remedy, "needs the file '%.200s': %.300s", l->name, fault.what);
     l->text = lines_of(text.bytes, text.size);
-    const status code = read_text(l);
+    code = read_text(l);
     files_release(&text);
     return code;
 }

@@ -14,6 +14,10 @@ enum { POLYGON_MAX = 65536 /* corners */ };
 /* Reads the file of the request into an empty mesh. STATUS_BAD_INPUT if its ending is unknown. */
 status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
 
+/* STATUS_BAD_INPUT if a file of this kind cannot begin so. size: of the whole file, or of what has been expanded of
+ * it, at least 64 KiB. An empty file passes, and every FILE_BUFFER. */
+status plain_check(file_kind kind, const char *bytes, size_t size, bool whole, diagnostic *why);
+
 /* ---- files.c ---- */
 
 /* The format by the ending of the name, or by the one before .gz; upper and lower case are the same. */
@@ -35,10 +39,13 @@ typedef struct file_text {
     size_t size, mapped; /* mapped: bytes of the mapping; 0: it is allocated */
 } file_text;
 
-/* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed. files_release frees the
- * text. An errno, or 0; EBADMSG: the compressed data is damaged. */
-int files_read(int fd, file_text *text);
+/* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed, to at most a quarter of the
+ * limit of memory. files_release frees the text. STATUS_BAD_INPUT also if plain_check refuses it. */
+status files_read(const request *req, int fd, file_kind kind, file_text *text, diagnostic *why);
 void files_release(file_text *text);
+
+/* Whether these are the contents of a file that gzip compressed. */
+bool files_compressed(const char *bytes, size_t size);
 
 /* Lines and words of a text, after whose end \n follows. */
 typedef struct lines {
@@ -73,6 +80,10 @@ status ply_read(const request *req, const char *text, size_t size, flat_mesh *fl
 /* Binary: 80 bytes, a count, and 50 bytes per facet. Text: facets from 'solid' to 'endsolid', once or more often. The
  * normals are ignored. */
 status stl_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
+/* Whether a binary file of this size agrees with the count in its header. */
+bool stl_agrees(const char *bytes, size_t size);
+/* STATUS_BAD_INPUT if more facets follow than the header of a binary file counts. `whole` as of plain_check. */
+status stl_check(const char *bytes, size_t size, bool whole, diagnostic *why);
 
 /* Format: Khronos Group, glTF 2.0 specification; .gltf and .glb by the kind of the request. The triangles of the scene,
  * in the pose that the file begins with; its materials, images, cameras and lights. */

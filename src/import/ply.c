@@ -202,8 +202,6 @@ static status read_header(ply *p)
     const char *word;
     size_t length;
     bool format = false;
-    if (!lines_word(&p->text, &word, &length) || !lines_is(word, length, "ply"))
-        return bad(p, "a PLY file begins with the line 'ply'");
     while (lines_next(&p->text)) {
         if (!lines_word(&p->text, &word, &length))
             continue;

@@ -206,21 +206,43 @@ static status read_text(stl *s)
 }
 
 /* A text begins with 'solid' after blanks, and has no NUL soon after; some binary files begin with 'solid', too. */
-static bool is_text(const stl *s)
+static bool is_text(const char *bytes, size_t size)
 {
     const char *word;
     size_t length;
-    lines l = lines_of(s->bytes, s->size);
+    lines l = lines_of(bytes, size);
     return lines_any_word(&l, &word, &length) && lines_is(word, length, "solid") &&
-           !memchr(s->bytes, 0, s->size < 512 ? s->size : 512);
+           !memchr(bytes, 0, size < 512 ? size : 512);
+}
+
+/* The size of a binary file by its header. */
+static uint64_t binary_size(const char *bytes, size_t size)
+{
+    return HEADER + FACET * (size >= HEADER ? (uint64_t)u32_at(bytes + HEADER - 4) : 0);
 }
 
 /* Fewer bytes than a facet's may follow the last one; more would be facets that the count conceals. */
+bool stl_agrees(const char *bytes, size_t size)
+{
+    const uint64_t end = binary_size(bytes, size);
+    return size >= end && size - end < FACET;
+}
+
+status stl_check(const char *bytes, size_t size, bool whole, diagnostic *why)
+{
+    const uint64_t end = binary_size(bytes, size);
+    if (size < end + FACET || is_text(bytes, size))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "the header is wrong; export the file again",
+                    "byte 80: the header counts %llu facets, but the file has %s%zu",
+                    (unsigned long long)((end - HEADER) / FACET), whole ? "" : "at least ", (size - HEADER) / FACET);
+}
+
 static status read_any(stl *s)
 {
-    const uint64_t count = s->size >= HEADER ? u32_at(s->bytes + HEADER - 4) : 0, end = HEADER + FACET * count;
+    const uint64_t end = binary_size(s->bytes, s->size), count = (end - HEADER) / FACET;
     if (s->size < HEADER || s->size != end) {
-        if (is_text(s))
+        if (is_text(s->bytes, s->size))
             return read_text(s);
         if (s->size < HEADER)
             return diagnose(s->why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
@@ -232,10 +254,6 @@ static status read_any(stl *s)
         return diagnose(s->why, STATUS_BAD_INPUT, "the file is truncated, or its header is wrong; export it again",
                         "byte %zu: the file ends within facet %zu of %llu", s->size, (s->size - HEADER) / FACET + 1,
                         (unsigned long long)count);
-    if (s->size - end >= FACET)
-        return diagnose(s->why, STATUS_BAD_INPUT, "the header is wrong; export the file again",
-                        "byte 80: the header counts %llu facets, but the file has %zu", (unsigned long long)count,
-                        (s->size - HEADER) / FACET);
     return read_binary(s, count);
 }
 

@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
+#include <zlib.h>
 
 static const mesh_limits limits = {
     .triangles = 1000000, .vertices = 1000000, .memory_bytes = (uint64_t)1 << 30, .wall_s = 600};
@@ -196,6 +197,96 @@ static void a_gltf_file_under_the_other_ending_is_refused(void **state)
     (void)state;
     refuse_bytes("binary.gltf", tetrahedron_glb("{\"mesh\":0}"), "this is a binary glTF file");
     refuse_within("json.glb", &limits, "begins with 'glTF'");
+}
+
+/* --- what is no text of the kind, compressed or not --- */
+
+/* The bytes as gzip compresses them. */
+static bytes gzipped(bytes plain)
+{
+    enum { GZIP = 16 + MAX_WBITS };
+    z_stream z = {.next_in = plain.at, .avail_in = (uInt)plain.size};
+    assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, GZIP, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    bytes b = {0};
+    b.room = deflateBound(&z, (uLong)plain.size);
+    b.at = malloc(b.room);
+    assert_non_null(b.at);
+    z.next_out = b.at;
+    z.avail_out = (uInt)b.room;
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    b.size = z.total_out;
+    deflateEnd(&z);
+    free(plain.at);
+    return b;
+}
+
+/* Many times the same bytes: compressed, they are a thousandth. */
+static bytes much(const void *unit, size_t length, size_t size)
+{
+    bytes b = {0};
+    b.room = b.size = size;
+    b.at = malloc(size);
+    assert_non_null(b.at);
+    for (size_t i = 0; i < size; i++)
+        b.at[i] = ((const unsigned char *)unit)[i % length];
+    return b;
+}
+
+static void what_is_no_mesh_is_refused_at_its_first_bytes(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *unit;
+        size_t length;
+        const char *pattern;
+    } cases[] = {
+        {"zeros.obj", "\0", 1, "this is not an OBJ file: it has bytes that no text has"},
+        {"png.obj", "\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16, "this is not an OBJ file"},
+        {"zeros.ply", "\0", 1, "begins with the line 'ply'"},
+        {"zeros.stl", "\0", 1, "byte 80: the header counts 0 facets, but the file has"},
+        {"zeros.gltf", "\0", 1, "does not begin with '{'"},
+        {"zeros.glb", "\0", 1, "begins with 'glTF'"},
+        {"marked.obj", "\xff\xfev\0 \0", 6, "the text is UTF-16; save it as UTF-8"},
+        {"marked.ply", "\xfe\xff\0p\0l\0y", 8, "the text is UTF-16; save it as UTF-8"},
+        {"unmarked.obj", "v\0 \0", 4, "the text is UTF-16; save it as UTF-8"},
+        {"unmarked.gltf", "\0{\0\n", 4, "the text is UTF-16; save it as UTF-8"},
+        {"marked.stl", "\xff\xfes\0o\0l\0i\0d\0\n", 14, "the text is UTF-16; save it as UTF-8"},
+    };
+    mesh_limits small = limits;
+    small.memory_bytes = (uint64_t)64 << 20;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bytes plain = much(cases[i].unit, cases[i].length, 100000), large;
+        char name[64];
+        snprintf(name, sizeof name, "%s.gz", cases[i].name);
+        refuse_bytes(cases[i].name, plain, cases[i].pattern);
+        if (strstr(name, "marked.stl"))
+            continue; /* known only with the size of the file */
+        large = gzipped(much(cases[i].unit, cases[i].length, (size_t)30 << 20));
+        put(name, large.at, large.size);
+        free(large.at);
+        refuse_within(name, &small, cases[i].pattern);
+    }
+    bytes twice = gzipped(gzipped(much(THREE "f 1 2 3\n", strlen(THREE "f 1 2 3\n"), 1000)));
+    refuse_bytes("twice.obj.gz", twice, "the file is compressed twice; expand it once");
+    put("zeros.mtl", "newmtl a\nKd\0 1", 15);
+    put_text("library.obj", "mtllib zeros.mtl\n" THREE "f 1 2 3\n");
+    refuse_within("library.obj", &limits, "needs the file 'zeros.mtl': this is not an MTL file");
+}
+
+/* A quarter of 64 MiB is 16.8 MB. Short of it, repeated text is refused after 67.1 MB. */
+static void what_expands_too_far_is_refused(void **state)
+{
+    (void)state;
+    mesh_limits small = limits;
+    small.memory_bytes = (uint64_t)64 << 20;
+    bytes b = gzipped(much("v 0 0 0\n", 8, (size_t)17 << 20));
+    put("bomb.obj.gz", b.at, b.size);
+    free(b.at);
+    refuse_within("bomb.obj.gz", &small,
+                  "MB expand to more than 17 MB, a quarter of the memory that reading it may take; "
+                  "raise --memory-limit");
+    refuse_bytes("repeated.obj.gz", gzipped(much("v 0 0 0\n", 8, (size_t)128 << 20)),
+                 "over 100 times as much, as no mesh does; if it is a mesh all the same, expand it first");
 }
 
 static bytes repeat(const char *before, const char *unit, const char *between, size_t count, const char *after)
@@ -434,6 +525,8 @@ int main(void)
         cmocka_unit_test(a_ply_with_invalid_lists_is_refused),
         cmocka_unit_test(a_glb_with_wrong_lengths_is_refused),
         cmocka_unit_test(a_gltf_file_under_the_other_ending_is_refused),
+        cmocka_unit_test(what_is_no_mesh_is_refused_at_its_first_bytes),
+        cmocka_unit_test(what_expands_too_far_is_refused),
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(exponentially_shared_nodes_are_refused),
         cmocka_unit_test(counts_above_the_limits_are_refused),

@@ -256,7 +256,7 @@ static void wrong_ply_files_are_refused_with_their_place(void **state)
 {
     (void)state;
     static const refusal cases[] = {
-        {"no ply\n", 1, "begins with the line 'ply'"},
+        {"no ply\n", 0, "begins with the line 'ply'"},
         {"ply\nelement vertex 3\nend_header\n", 3, "names no format"},
         {"ply\nformat klingon 1.0\n", 2, "the format is not ascii"},
         {ASCII "element vertex -3\n", 3, "the count of an element is invalid"},
