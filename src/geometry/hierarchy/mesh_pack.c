@@ -320,6 +320,8 @@ static status check_head(const mesh_head *h, const pack_reader *from, diagnostic
         return pack_damaged(why, "a mesh is larger than the package");
     if ((h->triangles || h->vertices) && !within(&h->bounds.low.x, 6))
         return pack_damaged(why, "the bounds of a mesh");
+    if (h->shells > h->triangles)
+        return pack_damaged(why, "the shells of a mesh");
     const bool hole = h->hole_from || h->hole_to || h->hole_triangle;
     if (hole && (h->hole_from >= h->vertices || h->hole_to >= h->vertices || h->hole_triangle >= h->triangles))
         return pack_damaged(why, "the hole of a mesh");

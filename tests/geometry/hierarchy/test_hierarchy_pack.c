@@ -182,6 +182,8 @@ static void heads_of_no_mesh_are_refused(void **state)
     REFUSED_BY(mesh_passed_on(m), m->hole.from, (uint32_t)m->vertex_count);
     REFUSED_BY(mesh_passed_on(m), m->hole.to, (uint32_t)m->vertex_count);
     REFUSED_BY(mesh_passed_on(m), m->hole.triangle, m->triangle_count);
+    REFUSED_BY(mesh_passed_on(m), m->shell_count, m->triangle_count + 1);
+    REFUSED_BY(mesh_passed_on(m), m->shell_count, SIZE_MAX); /* one more than that is 0 */
     mesh_release(m);
 }
 
