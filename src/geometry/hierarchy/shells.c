@@ -211,6 +211,16 @@ static void find_crossings(shell_room *r)
     }
 }
 
+/* At the place where they cross; of two that do not, at the first corner of the one. */
+static status refuse(const shell_room *r, const shell_pair *p, const char *what, diagnostic *why)
+{
+    const vec3 place = p->cross ? p->place : *corner_of(r->m, r->shells[p->one].first, 0);
+    return diagnose(why, STATUS_BAD_INPUT, REMEDY,
+                    "shells of the mesh overlap, those of triangles %lu and %lu at (%.9g, %.9g, %.9g), %s",
+                    (unsigned long)r->shells[p->one].first, (unsigned long)r->shells[p->other].first, place.x, place.y,
+                    place.z, what);
+}
+
 static void wind(void *context, const mesh_hit *hit)
 {
     shell_room *r = context;
@@ -221,15 +231,15 @@ static void wind(void *context, const mesh_hit *hit)
 }
 
 /* Around a corner of each shell, along a direction that seldom hits an edge; one that hits an edge gives a number that
- * a shell cannot have, and the next direction is tried. */
-static void find_windings(shell_room *r)
+ * a shell cannot have, and the next direction is tried. None is good around which a shell winds twice. */
+static status find_windings(shell_room *r, diagnostic *why)
 {
     static const vec3 directions[] = {{0.5396, 0.6180, 0.5716}, {-0.4142, 0.7321, 0.5408}, {0.3679, -0.5403, 0.7568}};
     for (r->at = 0; r->at < r->count && !cancel_asked_at(r->at); r->at++) {
         const size_t begin = r->shells[r->at].pairs, end = r->shells[r->at + 1].pairs;
-        bool good = begin == end;
-        for (int k = 0; k < 3 && !good; k++) {
-            good = true;
+        const shell_pair *bad = NULL;
+        for (int k = 0; k < 3 && begin < end && (k == 0 || bad); k++) {
+            bad = NULL;
             for (size_t p = begin; p < end; p++)
                 r->pairs[p].winding = 0;
             const mesh_ray ray = {.origin = *corner_of(r->m, r->shells[r->at].first, 0),
@@ -240,10 +250,14 @@ static void find_windings(shell_room *r)
             ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, wind, r);
             for (size_t p = begin; p < end; p++) {
                 const int turned = r->shells[r->pairs[p].other].volume6 < 0.0 ? -1 : 1;
-                good &= r->pairs[p].cross || r->pairs[p].winding == 0 || r->pairs[p].winding == turned;
+                if (!r->pairs[p].cross && r->pairs[p].winding != 0 && r->pairs[p].winding != turned)
+                    bad = &r->pairs[p];
             }
         }
+        if (bad && !cancel_asked())
+            return refuse(r, bad, "and it is not clear whether one lies in the other", why);
     }
+    return cancel_check(why);
 }
 
 /* --- layers --- */
@@ -286,12 +300,13 @@ static int layer_with(const shell_room *r, uint32_t at, int winding, const shell
     return -1;
 }
 
-static status refuse(const shell_room *r, const shell_pair *p, const char *what, diagnostic *why)
+/* A pair of the shell with one around it. There is one: each layer crosses it or has a winding number around it. */
+static const shell_pair *pair_around(const shell_room *r, uint32_t at)
 {
-    return diagnose(why, STATUS_BAD_INPUT, REMEDY,
-                    "shells of the mesh overlap, those of triangles %lu and %lu at (%.9g, %.9g, %.9g), %s",
-                    (unsigned long)r->shells[p->one].first, (unsigned long)r->shells[p->other].first, p->place.x,
-                    p->place.y, p->place.z, what);
+    const shell_pair *p = &r->pairs[r->shells[at].pairs];
+    while (p + 1 < &r->pairs[r->shells[at + 1].pairs] && p->winding == 0)
+        p++;
+    return p;
 }
 
 /* A hollow goes into a layer that is solid around it. One that has none is inside out. */
@@ -310,10 +325,8 @@ static status place_shell(shell_room *r, uint32_t at, diagnostic *why)
         s->layer = layer_with(r, at, 0, &across);
     if (s->layer >= 0)
         return STATUS_OK;
-    if (r->layer_count == LAYERS_MAX) {
-        const shell_pair *any = across ? across : &r->pairs[s->pairs];
-        return refuse(r, any, "and more than 32 lie in one another", why);
-    }
+    if (r->layer_count == LAYERS_MAX)
+        return refuse(r, across ? across : pair_around(r, at), "and more than 32 lie in one another", why);
     s->layer = r->layer_count++;
     return STATUS_OK;
 }
@@ -408,8 +421,7 @@ static status divide(shell_room *r, int threads, diagnostic *why)
     if (code == STATUS_OK) {
         r->tree = tree;
         find_crossings(r);
-        find_windings(r);
-        code = cancel_check(why);
+        code = find_windings(r, why);
     }
     THEN(code, place_shells(r, why));
     hierarchy_destroy(tree);

@@ -247,6 +247,54 @@ static void a_hollow_that_crosses_a_shell_is_refused(void **state)
     mesh_release(m);
 }
 
+static void refused_at(const mesh *m, const char *text)
+{
+    const mesh *const *layers;
+    int count;
+    diagnostic why = {0};
+    assert_int_equal(hierarchy_layers(m, 1, &layers, &count, &why), STATUS_BAD_INPUT);
+    if (!strstr(why.what, text))
+        fail_msg("%s", why.what);
+}
+
+/* The place is a corner of the innermost, whose first triangle is the first of the file. */
+static void more_than_32_in_one_another_are_refused(void **state)
+{
+    (void)state;
+    enum { N = 33 };
+    mesh *m = cubes(N);
+    for (size_t c = 0; c < N; c++)
+        put_cube(m, c, vec3_make(5.0, 0.0, 0.0), 1.0 + (double)c);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    refused_at(m, "those of triangles 0 and 12 at (4, -1, -1), and more than 32");
+    mesh_release(m);
+}
+
+/* A prism over a star of five points, drawn in one line, winds twice around its middle. */
+static void a_shell_in_one_that_winds_twice_is_refused(void **state)
+{
+    (void)state;
+    enum { N = 5, MIDDLE = 8 + 2 * N };
+    mesh *m = NULL;
+    assert_int_equal(mesh_create(MIDDLE + 2, 12 + 4 * N, false, false, false, &m, NULL), STATUS_OK);
+    put_cube(m, 0, vec3_make(0.0, 0.0, 0.0), 0.05);
+    for (int i = 0; i <= 2 * N + 1; i++) {
+        const double turn = 2.0 * 3.141592653589793 * (2 * (i / 2) + 0.1) / N, radius = i / 2 == N ? 0.0 : 1.0;
+        m->vertices[8 + i] = vec3_make(radius * cos(turn), radius * sin(turn), i % 2 ? 1.0 : -1.0);
+    }
+    for (uint32_t i = 0; i < N; i++) {
+        const uint32_t a = 8 + 2 * i, b = 8 + 2 * ((i + 1) % N);
+        m->triangles[12 + 4 * i] = (mesh_triangle){{MIDDLE, b, a}};
+        m->triangles[13 + 4 * i] = (mesh_triangle){{MIDDLE + 1, a + 1, b + 1}};
+        m->triangles[14 + 4 * i] = (mesh_triangle){{a, b, b + 1}};
+        m->triangles[15 + 4 * i] = (mesh_triangle){{a, b + 1, a + 1}};
+    }
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_int_equal(m->shell_count, 2);
+    refused_at(m, "those of triangles 0 and 12 at (-0.05, -0.05, -0.05), and it is not clear");
+    mesh_release(m);
+}
+
 /* A mesh that moves has other layers. */
 static void moved_shells_are_divided_again(void **state)
 {
@@ -296,6 +344,8 @@ int main(void)
         cmocka_unit_test(shells_that_miss_each_other_are_one_layer),
         cmocka_unit_test(a_shell_that_is_inside_out_is_turned),
         cmocka_unit_test(a_hollow_that_crosses_a_shell_is_refused),
+        cmocka_unit_test(more_than_32_in_one_another_are_refused),
+        cmocka_unit_test(a_shell_in_one_that_winds_twice_is_refused),
         cmocka_unit_test(moved_shells_are_divided_again),
         cmocka_unit_test(overlapping_spheres_are_their_union),
     };
