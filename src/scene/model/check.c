@@ -202,11 +202,21 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
     if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE)
         return STATUS_OK;
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
+    const int sharing = data->hole.sharing;
+    if (sharing >= 2)
+        return diagnose(
+            why, STATUS_BAD_INPUT,
+            sharing == 2 ? "cut the mesh, or make the solid opaque (transparency 0)"
+                         : "separate the parts, or remove what they share, or make the solid opaque (transparency 0)",
+            "%.80s is transparent, but its mesh %.80s has no inside: at the edge from (%g, %g, %g) to (%g, %g, %g) of "
+            "triangle %zu %s",
+            owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle,
+            sharing == 2 ? "the surface turns its other side" : "more than two triangles meet");
     return diagnose(why, STATUS_BAD_INPUT,
                     "close the mesh (cuvette mesh --close), or make the solid opaque (transparency 0)",
                     "%.80s is transparent, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, "
                     "%g) of triangle %zu belongs to %d triangles instead of 2",
-                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
+                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, sharing);
 }
 
 /* A spectral film needs one spectrum per material: textures and materials by face have none. */

@@ -295,6 +295,25 @@ static void a_shell_in_one_that_winds_twice_is_refused(void **state)
     mesh_release(m);
 }
 
+/* Two cubes with a common face: its edges belong to four triangles. */
+static void shells_that_share_an_edge_are_told_apart_from_open_ones(void **state)
+{
+    (void)state;
+    mesh *m = cubes(2);
+    put_cube(m, 1, vec3_make(2.0, 0.0, 0.0), 1.0);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    diagnostic why = {0};
+    scene *s = scene_of_mesh(m);
+    worked(scene_load(s, &why), &why);
+    assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "more than two triangles meet"));
+    assert_null(strstr(why.what, "is open"));
+    assert_null(strstr(why.remedy, "--close"));
+    scene_destroy(s);
+    mesh_release(m);
+}
+
 /* A mesh that moves has other layers. */
 static void moved_shells_are_divided_again(void **state)
 {
@@ -346,6 +365,7 @@ int main(void)
         cmocka_unit_test(a_hollow_that_crosses_a_shell_is_refused),
         cmocka_unit_test(more_than_32_in_one_another_are_refused),
         cmocka_unit_test(a_shell_in_one_that_winds_twice_is_refused),
+        cmocka_unit_test(shells_that_share_an_edge_are_told_apart_from_open_ones),
         cmocka_unit_test(moved_shells_are_divided_again),
         cmocka_unit_test(overlapping_spheres_are_their_union),
     };
