@@ -244,6 +244,7 @@ static void holes_that_meet_are_filled(void **state)
     mesh_release(m);
     m = cubes(1); /* without all but the two triangles of one face: its border is filled by both, turned over */
     m->triangle_count = 2;
+    m->vertices[3].z -= 1.0; /* not flat */
     m = repaired(finished(m), 0.0, &r);
     assert_int_equal(r.fills[0].edges, 4);
     free(r.fills);
@@ -293,17 +294,52 @@ static void random_holes_are_filled(void **state)
     }
 }
 
-static void refused(mesh *m, double weld, const char *text)
+static void refused_with(mesh *m, double weld, const char *text, const char *remedy)
 {
     mesh_repairs r;
     mesh *out;
     diagnostic why = {0};
     assert_int_equal(mesh_repair(finished(m), weld, &r, &out, &why), STATUS_BAD_INPUT);
     assert_null(out);
-    if (!strstr(why.what, text))
-        fail_msg("%s", why.what);
+    if (!strstr(why.what, text) || (remedy && strcmp(why.remedy, remedy) != 0))
+        fail_msg("%s; %s", why.what, why.remedy);
     free(r.fills);
     mesh_release(m);
+}
+
+static void refused(mesh *m, double weld, const char *text)
+{
+    refused_with(m, weld, text, NULL);
+}
+
+#define SEPARATE "separate the parts, or remove what they share"
+
+/* Welding is named where it is the cause only. */
+static void crowded_edges_are_refused(void **state)
+{
+    (void)state;
+    static const vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {5, 0, 0}, {5.01, 0, 0}};
+    static const mesh_triangle fin[] = {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}, {{2, 3, 5}}, {{2, 4, 6}}};
+    refused_with(mesh_of(corners, 7, fin, 3), 0.0, "to (1, 0, 0) more than two triangles meet", SEPARATE);
+    refused_with(mesh_of(corners, 7, fin, 5), 0.1, "to (1, 0, 0) more than two triangles meet", SEPARATE);
+    mesh *m = cubes(2); /* with a common edge, after welding */
+    put_cube(m, 1, vec3_make(2.01, 2.01, 0.0), 1.0);
+    refused_with(m, 0.1, "from (1, 1, 1) to (1, 1, -1) more than two triangles meet",
+                 SEPARATE ", or use another distance to weld");
+}
+
+static void what_has_no_volume_is_refused(void **state)
+{
+    (void)state;
+    static const vec3 line[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, small[] = {{0, 0, 0}, {1, 0, 0}, {0.1, 0.1, 0}},
+                      tilted[] = {{0.1, 0.7, 0.3}, {1.3, 0.2, 0.9}, {0.4, 2.1, 0.6}};
+    static const mesh_triangle one[] = {{{0, 1, 2}}}, none[] = {{{0, 1, 1}}};
+    refused_with(mesh_of(small, 3, one, 1), 0.5, "all triangles have two equal corners",
+                 "use a smaller distance to weld");
+    refused_with(mesh_of(small, 3, none, 1), 0.0, "all triangles have two equal corners",
+                 "give a mesh with triangles that have an area");
+    refused(mesh_of(line, 3, one, 1), 0.0, "a volume of 0");
+    refused(mesh_of(tilted, 3, one, 1), 0.0, "a volume of 0");
 }
 
 static void what_cannot_be_closed_is_refused(void **state)
@@ -345,6 +381,8 @@ int main(void)
         cmocka_unit_test(holes_that_meet_are_filled),
         cmocka_unit_test(two_divisions_by_one_diagonal_are_made_different),
         cmocka_unit_test(random_holes_are_filled),
+        cmocka_unit_test(crowded_edges_are_refused),
+        cmocka_unit_test(what_has_no_volume_is_refused),
         cmocka_unit_test(what_cannot_be_closed_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -136,7 +136,7 @@ typedef struct mesh_repairs {
  * 12(2), 1995), or, if that would use an edge of the mesh or has more than 400 corners, around a new vertex at their
  * mean. New triangles have the slot of a neighbour, and vertices of their own if the mesh has normals. The caller frees
  * repairs->fills, also after a failure, and releases the mesh. STATUS_BAD_INPUT, with the place, if the result is not
- * closed: more than two triangles share an edge, or the surface has one side. Otherwise as mesh_finish. */
+ * closed: more than two triangles share an edge, the surface has one side, or it is flat. Otherwise as mesh_finish. */
 status mesh_repair(const mesh *m, double weld, mesh_repairs *repairs, mesh **out, diagnostic *why);
 
 /* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */

@@ -13,6 +13,7 @@ enum { TRIANGULATED_MAX = 400 }; /* corners: the time is cubic */
 #define CRAMPED "use fewer triangles"
 
 typedef struct repair {
+    const mesh *given;
     mesh *m; /* the copy, which is not finished */
     mesh_repairs *counts;
     mesh_neighbours n;
@@ -520,6 +521,47 @@ static status copy_of(const mesh *m, mesh **out, diagnostic *why)
     return STATUS_OK;
 }
 
+/* Whether welding moved an end of the edge in one of its triangles. */
+static bool is_welded(const repair *r, size_t half)
+{
+    uint32_t halves[SHARING_MAX];
+    const size_t count = halves_between(r, begin_of(r, half), begin_of(r, next_half((uint32_t)half)), halves);
+    bool moved = false;
+    for (size_t i = 0; i < 2 * count; i++) {
+        const uint32_t at = i % 2 ? next_half(halves[i / 2]) : halves[i / 2],
+                       v = r->m->triangles[at / 3].corner[at % 3];
+        moved |= vec3_length(vec3_sub(r->m->vertices[v], r->given->vertices[v])) > 0.0;
+    }
+    return moved;
+}
+
+/* That triangles are left, and an edge belongs to at most two of them. */
+static status check_triangles(const repair *r, diagnostic *why)
+{
+    if (r->m->triangle_count == 0)
+        return diagnose(why, STATUS_BAD_INPUT,
+                        r->counts->welded ? "use a smaller distance to weld"
+                                          : "give a mesh with triangles that have an area",
+                        "the mesh cannot be closed: all triangles have two equal corners");
+    if (r->n.crowded == SIZE_MAX)
+        return STATUS_OK;
+    return refuse(r->m, r->n.crowded, "more than two triangles meet",
+                  is_welded(r, r->n.crowded)
+                      ? "separate the parts, or remove what they share, or use another distance to weld"
+                      : "separate the parts, or remove what they share",
+                  why);
+}
+
+/* A flat piece is filled by its own triangles turned over. Its volume is 0 but for rounding. */
+static status check_volume(const repair *r, const mesh *m, diagnostic *why)
+{
+    const vec3 size = vec3_sub(m->bounds.high, m->bounds.low);
+    if (r->counts->holes == 0 || fabs(mesh_volume(m)) > 0x1p-44 * mesh_area(m) * vec3_length(size))
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "give a mesh that is not flat",
+                    "the mesh cannot be closed: the result has a volume of 0");
+}
+
 /* The steps on the copy. */
 static status make_whole(repair *r, double weld, mesh **out, diagnostic *why)
 {
@@ -528,9 +570,7 @@ static status make_whole(repair *r, double weld, mesh **out, diagnostic *why)
         TRY(weld_vertices(r->m, weld, &r->counts->welded, why));
     TRY(drop_triangles(r, why));
     TRY(find_neighbours(r, why));
-    if (r->n.crowded != SIZE_MAX)
-        return refuse(r->m, r->n.crowded, "more than two triangles meet",
-                      "remove those between, or use another distance to weld", why);
+    TRY(check_triangles(r, why));
     TRY(mesh_turn_alike(r->m, r->n.same, r->n.mates, &r->counts->turned, &against, why));
     if (against != SIZE_MAX)
         return refuse(r->m, against, "the surface turns its other side, as a Moebius strip does", "cut it", why);
@@ -540,7 +580,7 @@ static status make_whole(repair *r, double weld, mesh **out, diagnostic *why)
     TRY(assemble(r, out, why));
     const mesh_hole *hole = &(*out)->hole;
     return (*out)->closed
-               ? STATUS_OK
+               ? check_volume(r, *out, why)
                : refuse(*out, 3 * hole->triangle, "it remains open", "report this as a bug, with the file", why);
 }
 
@@ -557,7 +597,7 @@ status mesh_repair(const mesh *m, double weld, mesh_repairs *repairs, mesh **out
     if (weld > 0.0 && !(weld < extent && far / weld < 0x1p50))
         return diagnose(why, STATUS_BAD_INPUT, "use a distance well below the size of the mesh, or 0",
                         "vertices of a mesh of size %g cannot be welded within %g", extent, weld);
-    repair r = {.counts = repairs};
+    repair r = {.given = m, .counts = repairs};
     status code = copy_of(m, &r.m, why);
     THEN(code, make_whole(&r, weld, out, why));
     mesh_release(r.m);
