@@ -198,16 +198,24 @@ static status note_repairs(const mesh_repairs *r, diagnostic *why)
     return STATUS_OK;
 }
 
+static bool is_changed(const mesh_repairs *r)
+{
+    return r->welded || r->degenerate || r->duplicate || r->swapped || r->turned || r->holes;
+}
+
 static status close_mesh(mesh_request *request, diagnostic *why)
 {
     mesh_repairs repairs;
     status code = mesh_repair(request->made, fmax(request->weld, 0.0), &repairs, &request->repaired, why);
     if (code != STATUS_OK && request->file)
         diagnostic_locate(why, request->file, 0, 0);
-    THEN(code, note_repairs(&repairs, why));
-    free(repairs.fills);
-    if (code == STATUS_OK)
+    if (code == STATUS_OK && request->made->closed && !is_changed(&repairs)) {
+        terminal_note("the mesh is closed already; nothing was changed");
+    } else if (code == STATUS_OK) {
+        code = note_repairs(&repairs, why);
         request->made = request->repaired;
+    }
+    free(repairs.fills);
     return code;
 }
 

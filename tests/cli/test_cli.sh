@@ -531,6 +531,13 @@ check "mesh --close says what it did" is "$code $(cat err)" "0 cuvette: note: we
 and 0 double triangles; swapped 0 diagonals; turned 0 over; filled 1 hole with 2 triangles: 4 edges, 0.951 wide"
 run mesh closed.obj
 check "mesh --close closes" is "$(grep -cE '^closed +yes' out) $(grep -cE '^triangles +40' out)" "1 1"
+run mesh closed.obj --close -o same.obj
+check "mesh --close leaves a closed mesh as it is" is "$code $(cat err) $(cmp closed.obj same.obj && echo same)" \
+    "0 cuvette: note: the mesh is closed already; nothing was changed same"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0.1 0.1 0' 'f 1 2 3' >flat.obj
+run mesh flat.obj --close --weld 0.5
+check "mesh --close refuses a distance that leaves no triangle" is "$code $(cat err)" "2 cuvette: flat.obj: the mesh \
+cannot be closed: all triangles have two equal corners; use a smaller distance to weld"
 run mesh torus.obj --weld=0.1
 check "--weld needs --close" is "$code $(cat err)" "2 cuvette: mesh: --weld has no effect without --close; add --close"
 run mesh torus.obj --close --weld=9
