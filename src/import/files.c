@@ -19,7 +19,7 @@ enum {
     UNKNOWN_MAX = 1 << 16, /* bytes of a file of /proc, whose size is 0 */
     SUSPECT = 1 << 26,     /* expanded bytes of a small file that can take long; those of meshes are 3 to 30 times */
     SUSPECT_TIMES = 100,   /* the compressed ones */
-    CHECKED = 1 << 16      /* expanded bytes that are enough for plain_check */
+    CHECKED = 1 << 16      /* expanded bytes that are enough for the check */
 };
 
 /* --- files --- */
@@ -168,7 +168,7 @@ static status inflate_all(z_stream *z, const reading *r, file_text *out, size_t 
         code = inflate(z, Z_NO_FLUSH);
         out->size += part - z->avail_out;
         if (out->size >= CHECKED)
-            TRY(plain_check(r->kind, out->bytes, out->size, false, r->why));
+            TRY(r->req->check(r->kind, out->bytes, out->size, false, r->why));
         if (out->size > r->most)
             return expands_too_far(r, compressed);
         if (out->size > SUSPECT && out->size / SUSPECT_TIMES > compressed - z->avail_in)
@@ -232,7 +232,7 @@ status files_read(const request *req, int fd, file_kind kind, file_text *text, d
     status code = STATUS_OK;
     if (files_compressed(text->bytes, text->size))
         code = decompress(text, &r);
-    THEN(code, plain_check(kind, text->bytes, text->size, true, why));
+    THEN(code, req->check(kind, text->bytes, text->size, true, why));
     if (code != STATUS_OK)
         files_release(text);
     return code;

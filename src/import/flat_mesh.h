@@ -23,12 +23,17 @@ typedef enum file_kind {
     FILE_BUFFER
 } file_kind;
 
+/* STATUS_BAD_INPUT if a file of this kind cannot begin so. size: of the whole file, or of what has been expanded of it,
+ * at least 64 KiB. An empty file passes. */
+typedef status content_check(file_kind kind, const char *bytes, size_t size, bool whole, diagnostic *why);
+
 typedef struct request {
     const char *path;
     file_kind kind;               /* by the file's extension */
     uint64_t memory_mib, seconds; /* limits on this process; 0: none */
     uint64_t triangles, vertices; /* limits on the mesh */
     const char *root;             /* folder of all files that may be opened (base/file.h); "": no restriction */
+    content_check *check;         /* of each file that is read; set by plain_read */
 } request;
 
 /* STATUS_BAD_INPUT for a request with a limit of memory, because the file needs more; else STATUS_FAILURE. */

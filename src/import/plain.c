@@ -21,7 +21,7 @@ static status foreign(const char *what, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "check that the file has the right ending", "%s", what);
 }
 
-status plain_check(file_kind kind, const char *bytes, size_t size, bool whole, diagnostic *why)
+static status plain_check(file_kind kind, const char *bytes, size_t size, bool whole, diagnostic *why)
 {
     enum { BLOCK = 1 << 16 };
     if (kind == FILE_BUFFER || size == 0)
@@ -61,9 +61,11 @@ static status load(const request *req, file_text *text, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty");
 }
 
-status plain_read(const request *req, flat_mesh *flat, diagnostic *why)
+status plain_read(const request *given, flat_mesh *flat, diagnostic *why)
 {
+    request with = *given, *req = &with;
     file_text text;
+    with.check = plain_check;
     if (req->kind == FILE_UNKNOWN)
         return diagnose_at(why, req->path, STATUS_BAD_INPUT,
                            "use a file that ends in .obj, .ply, .stl, .gltf or .glb, or in .xyz for points",

@@ -14,10 +14,6 @@ enum { POLYGON_MAX = 65536 /* corners */ };
 /* Reads the file of the request into an empty mesh. STATUS_BAD_INPUT if its ending is unknown. */
 status plain_read(const request *req, flat_mesh *flat, diagnostic *why);
 
-/* STATUS_BAD_INPUT if a file of this kind cannot begin so. size: of the whole file, or of what has been expanded of
- * it, at least 64 KiB. An empty file passes, and every FILE_BUFFER. */
-status plain_check(file_kind kind, const char *bytes, size_t size, bool whole, diagnostic *why);
-
 /* ---- files.c ---- */
 
 /* The format by the ending of the name, or by the one before .gz; upper and lower case are the same. */
@@ -40,7 +36,7 @@ typedef struct file_text {
 } file_text;
 
 /* Reads an open file, or maps it, and closes it; one that gzip compressed is decompressed, to at most a quarter of the
- * limit of memory. files_release frees the text. STATUS_BAD_INPUT also if plain_check refuses it. */
+ * limit of memory. files_release frees the text. STATUS_BAD_INPUT also if the check of the request refuses it. */
 status files_read(const request *req, int fd, file_kind kind, file_text *text, diagnostic *why);
 void files_release(file_text *text);
 
@@ -82,7 +78,7 @@ status ply_read(const request *req, const char *text, size_t size, flat_mesh *fl
 status stl_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
 /* Whether a binary file of this size agrees with the count in its header. */
 bool stl_agrees(const char *bytes, size_t size);
-/* STATUS_BAD_INPUT if more facets follow than the header of a binary file counts. `whole` as of plain_check. */
+/* STATUS_BAD_INPUT if more facets follow than the header of a binary file counts. `whole` as of content_check. */
 status stl_check(const char *bytes, size_t size, bool whole, diagnostic *why);
 
 /* Format: Khronos Group, glTF 2.0 specification; .gltf and .glb by the kind of the request. The triangles of the scene,

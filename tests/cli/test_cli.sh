@@ -519,7 +519,8 @@ yes 'v 0 0 0' | head -c 40000000 | gzip >bomb.obj.gz
 size=$(python3 -c 'import os; print("%.3g" % (os.path.getsize("bomb.obj.gz") / 1e6))')
 said=$("$(dirname "$program")/cuvette-import" --memory=100 bomb.obj.gz 2>&1 >/dev/null)
 check "the importer refuses a small file with a large text" is "$? ${said%%;*}" \
-    "2 cuvette-import: bomb.obj.gz: its $size MB expand to more than 26 MB, a quarter of the memory that reading it may take"
+    "2 cuvette-import: bomb.obj.gz: its $size MB expand to more than 26 MB, a quarter of the memory that \
+reading it may take"
 rm bomb.obj.gz
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'f 1 2 x' >bad.obj
 run mesh bad.obj

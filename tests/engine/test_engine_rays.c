@@ -358,6 +358,43 @@ static void test_a_request_of_the_first_version(void **state)
     cuvette_scene_destroy(s);
 }
 
+/* Of a grid of rays, those that hit a box whose walls have holes. */
+static int hits_of_holes(const char *alpha)
+{
+    enum { SIDE = 20 };
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    cuvette_ray rays[SIDE * SIDE] = {0};
+    cuvette_hit hits[SIDE * SIDE];
+    unsigned char blocked[SIDE * SIDE];
+    int count = 0;
+    fine(cuvette_scene_read("tests/data/acts/holes.yaml", &s, &why), &why);
+    turn(s, "wall.alpha", alpha);
+    turn(s, "ground.visible", "off");
+    fine(cuvette_query_create(s, NULL, &q, &why), &why);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        fine(cuvette_query_camera_ray(q, 12 + 2.0 * (i % SIDE), 9 + 1.5 * (i / SIDE), &rays[i], &why), &why);
+    fine(cuvette_query_nearest(q, rays, SIDE * SIDE, hits, &why), &why);
+    fine(cuvette_query_occluded(q, rays, SIDE * SIDE, blocked, &why), &why);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        assert_true(blocked[i] == isfinite(hits[i].distance));
+        count += isfinite(hits[i].distance) != 0;
+    }
+    cuvette_query_destroy(q);
+    cuvette_scene_destroy(s);
+    return count;
+}
+
+/* A blended surface is there where its alpha is at least 1/2, as one that is cut there. */
+static void rays_pass_through_what_alpha_removes(void **state)
+{
+    (void)state;
+    const int whole = hits_of_holes("opaque"), cut = hits_of_holes("mask");
+    assert_true(cut > 0 && cut < whole);
+    assert_int_equal(hits_of_holes("blend"), cut);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +408,7 @@ int main(void)
         cmocka_unit_test(test_comparison),
         cmocka_unit_test(test_layers_and_maps),
         cmocka_unit_test(test_a_request_of_the_first_version),
+        cmocka_unit_test(rays_pass_through_what_alpha_removes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
