@@ -275,6 +275,30 @@ static void nodes_are_trees(void **state)
         refuse_document(cases[i].text, three(), cases[i].words);
 }
 
+/* A chain of `last` nodes below the first; only the last one has the mesh. */
+static char *chain(int last)
+{
+    bytes b = {0};
+    char node[64];
+    for (int i = 1; i <= last; i++)
+        add(&b, node, (size_t)snprintf(node, sizeof node, "{'children':[%d]},", i));
+    add(&b, "", 1);
+    char *text = text_format(DOCUMENT("%s{'mesh':0}", PLAIN, POSITIONS, VIEW(0, 36), ""), (char *)b.at);
+    free(b.at);
+    return text;
+}
+
+static void nodes_are_nested_up_to_a_limit(void **state)
+{
+    (void)state;
+    char *most = chain(256), *more = chain(257);
+    mesh_import *got = read_document(most, three());
+    assert_int_equal(got->mesh->triangle_count, 1);
+    mesh_import_destroy(got);
+    refuse_document(more, three(), "nodes are nested more than 256 deep");
+    free(most), free(more);
+}
+
 /* Without "scene" the first one is read. */
 static void one_scene_is_read(void **state)
 {
@@ -588,6 +612,7 @@ int main(void)
         cmocka_unit_test(lines_beside_triangles_are_noted),
         cmocka_unit_test(nodes_turn_scale_and_move),
         cmocka_unit_test(nodes_are_trees),
+        cmocka_unit_test(nodes_are_nested_up_to_a_limit),
         cmocka_unit_test(one_scene_is_read),
         cmocka_unit_test(skins_follow_their_joints),
         cmocka_unit_test(names_of_buffers_are_decoded),
