@@ -3,8 +3,8 @@
  * References in comments are to the sections of the glTF 2.0 specification of the Khronos Group, version 2.0.1. All
  * numbers are doubles; coordinates have the axes of the file: x to the right, y up, z towards the viewer. Ownership: a
  * gltf_file owns what it has read, and the views of it in accessors. Errors: STATUS_BAD_INPUT with the item that is
- * wrong, such as "accessors[3].count"; `why` already has the path. Memory is taken for bytes that exist: an accessor
- * only views them. */
+ * wrong, such as "accessors[3].count"; `why` already has the path. An accessor only views bytes; one without bytes, whose
+ * elements are 0, has no more of them than the file and the buffers that were read have bytes. */
 #pragma once
 
 #include "import/plain.h"
@@ -31,8 +31,8 @@ typedef struct gltf_file {
     flat_mesh *flat;
     diagnostic *why;
     json_t *root;
-    const unsigned char *chunk; /* the binary chunk of a .glb file; NULL: none */
-    size_t chunk_size, buffer_count;
+    const unsigned char *chunk;            /* the binary chunk of a .glb file; NULL: none */
+    size_t size, chunk_size, buffer_count; /* size: of the file */
     gltf_buffer *buffers;
     uint32_t *image_numbers; /* of the images in the mesh, by image of the file; 0: not there yet */
 } gltf_file;

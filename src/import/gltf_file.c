@@ -205,11 +205,13 @@ static status check_extensions(const gltf_file *g)
 
 status gltf_open(gltf_file *g, const char *text, size_t size)
 {
+    const size_t file_size = size;
     if (g->req->kind == FILE_GLB)
         TRY(open_binary(g, &text, &size));
     TRY(parse(g, text, size));
     TRY(check_version(g));
     TRY(check_extensions(g));
+    g->size = file_size;
     g->buffer_count = gltf_count(g, "buffers");
     g->buffers = calloc(g->buffer_count + 1, sizeof *g->buffers);
     g->image_numbers = calloc(gltf_count(g, "images") + 1, sizeof *g->image_numbers);
@@ -431,6 +433,17 @@ static status open_sparse(gltf_file *g, gltf_item of, const json_t *sparse, gltf
     return STATUS_OK;
 }
 
+/* Elements without bytes, which are 0: the file and its buffers could index as many as they have bytes at most. */
+static status check_zeros(const gltf_file *g, gltf_item of, size_t count)
+{
+    uint64_t bytes = g->size;
+    for (size_t i = 0; i < g->buffer_count; i++)
+        bytes += g->buffers[i].size;
+    return count <= bytes ? STATUS_OK
+                          : gltf_bad(g, of, "count", "is %zu, without bytes, in a file of %llu bytes", count,
+                                     (unsigned long long)bytes);
+}
+
 status gltf_accessor_open(gltf_file *g, gltf_item reader, int64_t index, int components, gltf_accessor *out)
 {
     static const char *const types[TYPES] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"};
@@ -455,7 +468,9 @@ status gltf_accessor_open(gltf_file *g, gltf_item reader, int64_t index, int com
         return gltf_bad(g, of, "count", "is 0 or missing");
     TRY(open_elements(g, of, of.json, count, size, &out->base, &out->stride));
     const json_t *sparse = json_object_get(of.json, "sparse");
-    return sparse ? open_sparse(g, of, sparse, out) : STATUS_OK;
+    if (sparse)
+        TRY(open_sparse(g, of, sparse, out));
+    return out->base ? STATUS_OK : check_zeros(g, of, out->count);
 }
 
 /* --- reading --- */

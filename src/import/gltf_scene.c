@@ -137,6 +137,8 @@ static status open_indices(gltf_file *g, const json_t *json, primitive *p)
     if (index < 0)
         return STATUS_OK;
     TRY(gltf_accessor_open(g, p->mesh, index, 1, &p->indices));
+    if (!p->indices.base && !p->indices.sparse_count)
+        return gltf_bad(g, gltf_at(g, "accessors", (size_t)index), "bufferView", "is missing, but these are indices");
     const int type = p->indices.type;
     return type == UINT8 || type == UINT16 || type == UINT32
                ? STATUS_OK
@@ -150,6 +152,18 @@ static void note_rest(const gltf_file *g, const json_t *primitive_json)
         flat_note(g->flat, "shapes that morph are shown at rest");
 }
 
+/* Refuses a primitive that has its positions in no other form. */
+static status refuse_draco(const gltf_file *g, gltf_item mesh, const json_t *json)
+{
+    int64_t index;
+    TRY(gltf_index(g, mesh, json_object_get(json, "attributes"), "POSITION", "accessors", &index));
+    if (index < 0 || !gltf_extension(json, "KHR_draco_mesh_compression") ||
+        json_object_get(gltf_at(g, "accessors", (size_t)index).json, "bufferView"))
+        return STATUS_OK;
+    return diagnose(g->why, STATUS_BAD_INPUT, "export the file without compression",
+                    "%s[%zu] is compressed with Draco, which is not read", mesh.list, mesh.index);
+}
+
 static status open_primitive(gltf_file *g, gltf_item mesh, const json_t *json, primitive *p)
 {
     const json_t *attributes = json_object_get(json, "attributes");
@@ -161,12 +175,10 @@ static status open_primitive(gltf_file *g, gltf_item mesh, const json_t *json, p
     }
     TRY(gltf_index(g, mesh, json, "material", "materials", &p->material));
     TRY(gltf_material_uv_map(g, p->material, &p->map));
+    TRY(refuse_draco(g, mesh, json));
     TRY(open_attribute(g, p, attributes, "POSITION", 3, &p->positions));
     if (!p->positions.count)
         return STATUS_OK; /* 3.7.2.1: not drawn */
-    if (!p->positions.base && gltf_extension(json, "KHR_draco_mesh_compression"))
-        return diagnose(g->why, STATUS_BAD_INPUT, "export the file without compression",
-                        "%s[%zu] is compressed with Draco, which is not read", mesh.list, mesh.index);
     if (p->positions.count > g->req->vertices)
         return diagnose(g->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more vertices than the limit of %llu",
                         (unsigned long long)g->req->vertices);
