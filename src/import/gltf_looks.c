@@ -187,7 +187,8 @@ static status read_glass(const gltf_file *g, gltf_item of, mesh_wire_material *m
     m->ior = m->ior >= 1 ? m->ior : USUAL_IOR; /* 0 is a special value of the extension */
     TRY(gltf_numbers(g, of, clear, "transmissionFactor", 1, &m->transmission));
     m->transmission = fmin(fmax(m->transmission, 0), 1);
-    m->opacity *= 1 - m->transmission;
+    if (m->alpha_mode != MESH_WIRE_ALPHA_MASK) /* of a mask, opacity decides whether there is a surface */
+        m->opacity *= 1 - m->transmission;
     TRY(gltf_numbers(g, of, volume, "thicknessFactor", 1, &thickness));
     TRY(gltf_numbers(g, of, volume, "attenuationDistance", 1, &m->attenuation_distance));
     TRY(gltf_numbers(g, of, volume, "attenuationColor", 3, m->attenuation_color));

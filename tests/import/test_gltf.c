@@ -567,6 +567,10 @@ static void glass_has_its_numbers(void **state)
     assert_true(m->ior == 1.7 && m->transmission == 0.75 && m->opacity == 0.25 && m->dispersion == 0.4);
     assert_true(m->attenuation_distance == 0.5 && m->attenuation_color[0] == 0.5 && m->attenuation_color[1] == 0.25);
     mesh_import_destroy(got);
+    got =
+        with_material("'alphaMode':'MASK','extensions':{'KHR_materials_transmission':{'transmissionFactor':0.75}}", "");
+    assert_true(got->materials[0].transmission == 0.75 && got->materials[0].opacity == 1);
+    mesh_import_destroy(got);
     got = with_material(
         "'emissiveFactor':[0.5,1,0],'extensions':{'KHR_materials_emissive_strength':{'emissiveStrength':4}}", "");
     assert_true(got->materials[0].emissive[0] == 2 && got->materials[0].emissive[1] == 4);

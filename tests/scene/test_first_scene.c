@@ -124,12 +124,29 @@ static void glass_and_defaults(void **state)
     free(notes);
 }
 
+/* Alpha that blends or masks leaves holes in a surface, and no glass. */
+static void alpha_is_no_glass(void **state)
+{
+    (void)state;
+    static const char *const looks[] = {"'alphaMode':'BLEND','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.5]}",
+                                        "'alphaMode':'MASK','pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.25]}"};
+    for (int i = 0; i < 2; i++) {
+        char *notes;
+        scene *s = scene_of("", looks[i], "", &notes);
+        assert_int_equal(s->render.transmission, TRANSMISSION_REFRACT);
+        assert_true(!notes || !strstr(notes, "light goes straight"));
+        scene_destroy(s);
+        free(notes);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_camera_is_that_of_the_file),
         cmocka_unit_test(the_lights_sum_up_to_one),
         cmocka_unit_test(glass_and_defaults),
+        cmocka_unit_test(alpha_is_no_glass),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

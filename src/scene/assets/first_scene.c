@@ -98,7 +98,7 @@ static status add_glass(first_scene *f)
     size_t index;
     for (int i = 0; i < f->from->material_count; i++) {
         const imported_material *m = &f->from->materials[i];
-        if (m->opacity < 1)
+        if (m->transmission > 0 || (m->opacity < 1 && m->alpha_mode == MESH_WIRE_ALPHA_OPAQUE))
             clear++;
         if (m->transmission > 0 && !glass)
             glass = m;

@@ -33,7 +33,8 @@ typedef struct imported_material {
     double specular[3];  /* Ks */
     double emissive[3];  /* Ke; glTF emissiveFactor */
     double shininess;    /* Phong exponent: Ns */
-    double opacity;      /* 0 to 1: d, or 1 - Tr; glTF's alpha where it blends, times 1 - transmission */
+    double opacity;      /* 0 to 1: d, or 1 - Tr; glTF's alpha where it blends or masks, times
+                            1 - transmission unless it masks */
     double ior;          /* at least 1: Ni, KHR_materials_ior */
     double alpha_cutoff; /* with MESH_WIRE_ALPHA_MASK */
     double transmission; /* KHR_materials_transmission, 0 to 1 */
