@@ -230,7 +230,7 @@ status files_read(const request *req, int fd, file_kind kind, file_text *text, d
     if (error)
         return system_error(why, STATUS_BAD_INPUT, NULL, "cannot read", error, "give a readable mesh file");
     status code = STATUS_OK;
-    if (files_compressed(text->bytes, text->size))
+    if (kind != FILE_BUFFER && files_compressed(text->bytes, text->size)) /* a buffer may begin with any bytes */
         code = decompress(text, &r);
     THEN(code, req->check(kind, text->bytes, text->size, true, why));
     if (code != STATUS_OK)

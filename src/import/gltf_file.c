@@ -268,7 +268,7 @@ static status read_file(const gltf_file *g, gltf_item of, const char *uri, file_
     const char *reason = "";
     char *name = gltf_file_name(uri);
     const int fd = name ? files_open_beside(g->req, name, &reason) : -1;
-    const int error = name ? errno : ENOMEM;
+    int error = name ? errno : ENOMEM;
     status code = STATUS_OK;
     if (fd < 0 && error == ENOMEM)
         code = no_memory_for(g->req, g->why);

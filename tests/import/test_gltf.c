@@ -358,6 +358,27 @@ static void names_of_buffers_are_decoded(void **state)
     mesh_import_destroy(got);
 }
 
+/* The first float of this buffer has the bytes with which gzip's files begin; the buffer of the other cannot be read. */
+static void buffers_are_taken_as_they_are(void **state)
+{
+    (void)state;
+#define OUTSIDE(uri)                                                                                                   \
+    "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{"         \
+    "\"POSITION\":"                                                                                                    \
+    "0}}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"bufferViews\":[" \
+    "{"                                                                                                                \
+    "\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"" uri "\"}]}"
+    bytes b = three();
+    memcpy(b.at, "\x1f\x8b\x08", 4);
+    put("like_gzip.bin", b.at, b.size);
+    free(b.at);
+    mesh_import *got = read_text("like_gzip.gltf", OUTSIDE("like_gzip.bin"));
+    assert_int_equal(got->mesh->triangle_count, 1);
+    mesh_import_destroy(got);
+    static const char unread[] = OUTSIDE("/proc/self/mem");
+    refuse_at("unread.gltf", unread, sizeof unread - 1, 0, "which cannot be read: Input/output error");
+}
+
 static void mistakes_have_their_place(void **state)
 {
     (void)state;
@@ -623,6 +644,7 @@ int main(void)
         cmocka_unit_test(one_scene_is_read),
         cmocka_unit_test(skins_follow_their_joints),
         cmocka_unit_test(names_of_buffers_are_decoded),
+        cmocka_unit_test(buffers_are_taken_as_they_are),
         cmocka_unit_test(mistakes_have_their_place),
         cmocka_unit_test(small_files_need_little_memory),
         cmocka_unit_test(alpha_has_a_mode),
