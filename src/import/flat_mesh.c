@@ -152,6 +152,22 @@ status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*nu
 
 /* --- triangles and materials --- */
 
+/* As in a diagnostic. */
+static void replace_controls(char *text)
+{
+    for (char *c = text; *c; c++)
+        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+}
+
+/* A copy of a name; NULL: none, or no memory. */
+static char *name_copy(const char *name)
+{
+    char *copy = name ? strdup(name) : NULL;
+    if (copy)
+        replace_controls(copy);
+    return copy;
+}
+
 void flat_release(flat_mesh *flat)
 {
     free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->triangles), free(flat->slots);
@@ -186,8 +202,7 @@ status flat_material(const request *req, flat_mesh *flat, const mesh_wire_materi
     if (flat->material_count == MESH_WIRE_SLOTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "merge equal materials", "more than %d materials are in use",
                         (int)MESH_WIRE_SLOTS_MAX);
-    const mesh_material m = {
-        .values = *values, .name = name ? strdup(name) : NULL, .texture = texture ? strdup(texture) : NULL};
+    const mesh_material m = {.values = *values, .name = name_copy(name), .texture = texture ? strdup(texture) : NULL};
     *slot = (uint8_t)flat->material_count;
     flat->materials[flat->material_count++] = m;
     return (!name || m.name) && (!texture || m.texture) ? STATUS_OK : no_memory_for(req, why);
@@ -212,7 +227,7 @@ status flat_view(const request *req, flat_mesh *flat, const mesh_wire_view *valu
     }
     if (!flat->views && !(flat->views = malloc(MESH_WIRE_VIEWS_MAX * sizeof *flat->views)))
         return no_memory_for(req, why);
-    const mesh_view v = {*values, name ? strdup(name) : NULL};
+    const mesh_view v = {*values, name_copy(name)};
     flat->views[flat->view_count++] = v;
     return !name || v.name ? STATUS_OK : no_memory_for(req, why);
 }
@@ -224,8 +239,7 @@ void flat_note(flat_mesh *flat, const char *format, ...)
     va_start(list, format);
     vsnprintf(sentence, sizeof sentence, format, list);
     va_end(list);
-    for (char *c = sentence; *c; c++) /* as in a diagnostic */
-        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+    replace_controls(sentence);
     if (flat->note && strstr(flat->note, sentence))
         return;
     const size_t before = flat->note ? strlen(flat->note) + 2 : 0, length = before + strlen(sentence);

@@ -79,7 +79,8 @@ typedef struct flat_mesh {
 void flat_release(flat_mesh *flat);
 /* Makes the arrays for `count` triangles, and refuses more than the limit. */
 status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnostic *why);
-/* Adds a material for further triangles; *slot is its index. Name and texture are copied; NULL: none. */
+/* Adds a material for further triangles; *slot is its index. Name and texture are copied, control
+ * characters of the name as ?; NULL: none. */
 status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
                      const char *texture, uint8_t *slot, diagnostic *why);
 /* Adds an image, whose bytes it takes over; *number is its number from 1, or 0 if there are too many. */

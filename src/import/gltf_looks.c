@@ -171,8 +171,13 @@ static status read_emission(const gltf_file *g, gltf_item of, mesh_wire_material
     TRY(gltf_numbers(g, of, of.json, "emissiveFactor", 3, m->emissive));
     TRY(gltf_numbers(g, of, gltf_extension(of.json, "KHR_materials_emissive_strength"), "emissiveStrength", 1,
                      &strength));
+    const double brightest = fmax(fmax(m->emissive[0], m->emissive[1]), m->emissive[2]) * strength;
+    if (brightest > MESH_WIRE_COLOR_MAX) {
+        flat_note(g->flat, "emission is at most %g", MESH_WIRE_COLOR_MAX);
+        strength *= MESH_WIRE_COLOR_MAX / brightest;
+    }
     for (int c = 0; c < 3; c++)
-        m->emissive[c] *= strength;
+        m->emissive[c] = fmin(m->emissive[c] * strength, MESH_WIRE_COLOR_MAX);
     return STATUS_OK;
 }
 
@@ -195,8 +200,8 @@ static status read_glass(const gltf_file *g, gltf_item of, mesh_wire_material *m
     TRY(gltf_numbers(g, of, gltf_extension(of.json, "KHR_materials_dispersion"), "dispersion", 1, &m->dispersion));
     if (json_object_get(clear, "transmissionTexture") || json_object_get(volume, "thicknessTexture"))
         flat_note(g->flat, "images of transmission and thickness are ignored");
-    if (m->transmission > 0 && volume && thickness == 0)
-        m->attenuation_distance = 0; /* a thin wall */
+    if ((m->transmission > 0 && volume && thickness == 0) || m->attenuation_distance > MESH_WIRE_FAR)
+        m->attenuation_distance = 0; /* a thin wall; a large number stands for infinity, the default */
     return STATUS_OK;
 }
 
@@ -292,6 +297,7 @@ static status add_light(const gltf_file *g, gltf_item node, const json_t *lights
     TRY(gltf_numbers(g, of, of.json, "color", 3, v.color));
     TRY(gltf_numbers(g, of, of.json, "intensity", 1, &v.power));
     TRY(gltf_numbers(g, of, of.json, "range", 1, &v.range));
+    v.range = v.range > MESH_WIRE_FAR ? 0 : v.range; /* a large number stands for infinity, the default */
     TRY(gltf_numbers(g, of, spot, "innerConeAngle", 1, &v.inner));
     TRY(gltf_numbers(g, of, spot, "outerConeAngle", 1, &v.outer));
     return add_view(g, of, place, &v);

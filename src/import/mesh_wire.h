@@ -25,6 +25,8 @@ enum { MESH_WIRE_VERSION = 4, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 2
 enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 /* The largest magnitude of a coordinate. */
 #define MESH_WIRE_FAR 1e9
+/* The maximum of a colour component, an exponent or an index; larger values are errors in the file. */
+#define MESH_WIRE_COLOR_MAX 1e6
 
 enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
 enum { MESH_WIRE_GIVEN = 1 };                      /* flag of a material: the file defines it */

@@ -597,6 +597,15 @@ static void glass_has_its_numbers(void **state)
     assert_true(got->materials[0].emissive[0] == 2 && got->materials[0].emissive[1] == 4);
     assert_true(got->materials[0].ior == 1.5 && got->materials[0].transmission == 0);
     mesh_import_destroy(got);
+    got = with_material("'name':'a\\nb','emissiveFactor':[0.5,1,0],'extensions':{'KHR_materials_emissive_strength':{"
+                        "'emissiveStrength':4e38},'KHR_materials_transmission':{'transmissionFactor':1},"
+                        "'KHR_materials_volume':{'thicknessFactor':1,'attenuationDistance':3.4028234e38}}",
+                        "");
+    assert_true(fabs(got->materials[0].emissive[0] / 5e5 - 1) < 1e-12 && got->materials[0].emissive[1] <= 1e6);
+    assert_true(got->materials[0].attenuation_distance == 0);
+    assert_string_equal(got->materials[0].name, "a?b");
+    assert_non_null(strstr(got->note, "emission is at most 1e+06"));
+    mesh_import_destroy(got);
     got = with_material("'emissiveFactor':[1,1,1],'emissiveTexture':{'index':0}", INSIDE "}]");
     assert_true(got->materials[0].emissive[0] == 0);
     assert_non_null(strstr(got->note, "images of emission cannot be shown"));
@@ -615,7 +624,7 @@ static void cameras_and_lights_are_read(void **state)
                  PLAIN, POSITIONS, VIEW(0, 36),
                  ",'cameras':[{'type':'perspective','name':'eye','perspective':{'yfov':0.5,'aspectRatio':1.5}}],"
                  "'extensions':{'KHR_lights_punctual':{'lights':[{'type':'spot','color':[1,0.5,0],'intensity':20,"
-                 "'spot':{'innerConeAngle':0.25,'outerConeAngle':0.5}}]}}"),
+                 "'range':3.4028234e38,'spot':{'innerConeAngle':0.25,'outerConeAngle':0.5}}]}}"),
         three());
     assert_int_equal(got->view_count, 2);
     const mesh_wire_view *eye = got->views[0].values, *spot = got->views[1].values;
@@ -623,7 +632,8 @@ static void cameras_and_lights_are_read(void **state)
     assert_true(eye->kind == MESH_WIRE_PERSPECTIVE && eye->height == 0.5 && eye->aspect == 1.5);
     assert_true(eye->position[0] == 5 && eye->position[1] == 1 && eye->position[2] == 2);
     assert_true(fabs(eye->forward[0] + 1) < 1e-15 && fabs(eye->forward[2]) < 1e-15 && eye->up[1] == 1);
-    assert_true(spot->kind == MESH_WIRE_SPOT && spot->power == 20 && spot->inner == 0.25 && spot->outer == 0.5);
+    assert_true(spot->kind == MESH_WIRE_SPOT && spot->power == 20 && spot->range == 0 && spot->inner == 0.25 &&
+                spot->outer == 0.5);
     assert_true(spot->position[1] == 3 && spot->forward[2] == -1 && spot->color[1] == 0.5);
     mesh_import_destroy(got);
 }

@@ -22,8 +22,6 @@ _Static_assert((int)MESH_WIRE_SLOTS_MAX == (int)MESH_SLOTS_MAX && (int)MESH_WIRE
                "the same limits");
 _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays without padding");
 
-#define COLOR_MAX 1e6 /* maximum of a colour component, an exponent or an index; larger values are errors in the file */
-
 mesh_limits mesh_limits_complete(const mesh_limits *limits)
 {
     mesh_limits all = limits ? *limits : (mesh_limits){0};
@@ -166,19 +164,19 @@ static bool within(const double *values, int count, double low, double high)
 
 static status check_numbers(const imported_material *m, diagnostic *why)
 {
-    const char *wrong = !within(m->color, 3, 0, COLOR_MAX)                  ? "diffuse colour"
-                        : !within(m->ambient, 3, 0, COLOR_MAX)              ? "ambient colour"
-                        : !within(m->specular, 3, 0, COLOR_MAX)             ? "specular colour"
-                        : !within(m->emissive, 3, 0, COLOR_MAX)             ? "emitted colour"
-                        : !within(&m->shininess, 1, 0, COLOR_MAX)           ? "shininess"
-                        : !within(&m->opacity, 1, 0, 1)                     ? "opacity"
-                        : !within(&m->ior, 1, 0, COLOR_MAX)                 ? "index of refraction"
-                        : !within(&m->alpha_cutoff, 1, 0, COLOR_MAX)        ? "alpha cutoff"
-                        : !within(&m->transmission, 1, 0, 1)                ? "transmission"
-                        : !within(m->attenuation_color, 3, 0, 1)            ? "attenuation colour"
-                        : !within(&m->attenuation_distance, 1, 0, MESH_FAR) ? "attenuation distance"
-                        : !within(&m->dispersion, 1, 0, COLOR_MAX)          ? "dispersion"
-                                                                            : NULL;
+    const char *wrong = !within(m->color, 3, 0, MESH_WIRE_COLOR_MAX)           ? "diffuse colour"
+                        : !within(m->ambient, 3, 0, MESH_WIRE_COLOR_MAX)       ? "ambient colour"
+                        : !within(m->specular, 3, 0, MESH_WIRE_COLOR_MAX)      ? "specular colour"
+                        : !within(m->emissive, 3, 0, MESH_WIRE_COLOR_MAX)      ? "emitted colour"
+                        : !within(&m->shininess, 1, 0, MESH_WIRE_COLOR_MAX)    ? "shininess"
+                        : !within(&m->opacity, 1, 0, 1)                        ? "opacity"
+                        : !within(&m->ior, 1, 0, MESH_WIRE_COLOR_MAX)          ? "index of refraction"
+                        : !within(&m->alpha_cutoff, 1, 0, MESH_WIRE_COLOR_MAX) ? "alpha cutoff"
+                        : !within(&m->transmission, 1, 0, 1)                   ? "transmission"
+                        : !within(m->attenuation_color, 3, 0, 1)               ? "attenuation colour"
+                        : !within(&m->attenuation_distance, 1, 0, MESH_FAR)    ? "attenuation distance"
+                        : !within(&m->dispersion, 1, 0, MESH_WIRE_COLOR_MAX)   ? "dispersion"
+                                                                               : NULL;
     return !wrong ? STATUS_OK
                   : diagnose(why, STATUS_BAD_INPUT, "correct the material", "material '%s': its %s is out of range",
                              m->name ? m->name : "", wrong);
@@ -261,8 +259,9 @@ static status read_view(const mesh_source *source, bool right_handed, imported_v
     if (v->kind >= MESH_WIRE_VIEW_KINDS || !within(v->forward, 3, -1.001, 1.001) || !within(v->up, 3, -1.001, 1.001))
         return damaged(why, "a camera or a light has no direction");
     if (!within(v->position, 3, -MESH_FAR, MESH_FAR) || !within(&v->height, 1, 0, MESH_FAR) ||
-        !within(&v->aspect, 1, 0, MESH_FAR) || !within(v->color, 3, 0, COLOR_MAX) || !within(&v->power, 1, 0, 1e12) ||
-        !within(&v->inner, 1, 0, 4) || !within(&v->outer, 1, 0, 4) || !within(&v->range, 1, 0, 1e30))
+        !within(&v->aspect, 1, 0, MESH_FAR) || !within(v->color, 3, 0, MESH_WIRE_COLOR_MAX) ||
+        !within(&v->power, 1, 0, 1e12) || !within(&v->inner, 1, 0, 4) || !within(&v->outer, 1, 0, 4) ||
+        !within(&v->range, 1, 0, 1e30))
         return diagnose(why, STATUS_BAD_INPUT, "correct it", "a number of %s '%s' is out of range",
                         v->kind <= MESH_WIRE_ORTHOGRAPHIC ? "camera" : "light", view->name ? view->name : "");
     if (right_handed)
