@@ -266,15 +266,19 @@ static status visit_all(walk *w, const uint32_t *parent_plus_1, status (*visit)(
 static status find_tint(gltf_file *g, const primitive *p, double tint[3], bool *one)
 {
     gltf_accessor colors;
-    double color[4];
+    double color[4] = {0, 0, 0, 1};
+    bool clear = false;
     *one = true;
     TRY(open_attribute(g, p, p->attributes, "COLOR_0", 0, &colors));
-    for (size_t i = 0; colors.count && *one && i < p->positions.count; i++) {
+    for (size_t i = 0; colors.count && (*one || !clear) && i < p->positions.count; i++) {
         gltf_accessor_get(&colors, i, color);
         if (i == 0)
             memcpy(tint, color, 3 * sizeof *tint);
-        *one = memcmp(tint, color, 3 * sizeof *tint) == 0;
+        *one &= memcmp(tint, color, 3 * sizeof *tint) == 0;
+        clear |= color[3] < 1;
     }
+    if (clear)
+        flat_note(g->flat, "the alpha of vertices is ignored");
     return STATUS_OK;
 }
 

@@ -494,6 +494,12 @@ static void colors_of_vertices_are_the_materials(void **state)
         }
         mesh_import_destroy(got);
     }
+    bytes b = three();
+    for (int i = 0; i < 3; i++)
+        add_floats(&b, (float[4]){1, 1, 1, i == 2 ? 0.5F : 1}, 4);
+    mesh_import *got = read_document(COLORS("VEC4"), b);
+    assert_string_equal(got->note, "the alpha of vertices is ignored");
+    mesh_import_destroy(got);
 }
 
 #define TEXTURED(info) "'pbrMetallicRoughness':{'baseColorTexture':{'index':0" info "}}"
