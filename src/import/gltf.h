@@ -77,8 +77,6 @@ const char *gltf_text(const json_t *object, const char *key);
 status gltf_view_at(gltf_file *g, int64_t index, gltf_view *out);
 /* Decodes a data: URI; *bytes is NULL if it is none, and the caller's. */
 status gltf_decode(const gltf_file *g, gltf_item of, const char *uri, unsigned char **bytes, size_t *size);
-/* The name of a file in a URI: %20 and the like replaced. NULL without memory; the caller's. */
-char *gltf_file_name(const char *uri);
 
 /* The numbers of an accessor, checked against the bytes of its buffers. */
 typedef struct gltf_accessor {

@@ -231,7 +231,8 @@ void gltf_close(gltf_file *g)
 
 /* --- buffers --- */
 
-char *gltf_file_name(const char *uri)
+/* The name of a file in a URI: %20 and the like replaced. NULL without memory; the caller's. */
+static char *gltf_file_name(const char *uri)
 {
     char *name = strdup(uri), *to = name;
     for (const char *from = name; name && *from; from++) {

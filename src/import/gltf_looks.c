@@ -120,7 +120,7 @@ static status read_image(gltf_file *g, size_t index, mesh_wire_material *m, char
     m->image = g->image_numbers[index];
     if (bytes || m->image || strncmp(uri, "data:", 5) == 0)
         return STATUS_OK;
-    *path = gltf_file_name(uri);
+    *path = strdup(uri); /* whoever looks for the file decodes it */
     return *path ? STATUS_OK : no_memory_for(g->req, g->why);
 }
 

@@ -554,8 +554,21 @@ static void images_inside_the_file_are_carried(void **state)
     assert_non_null(strstr(got->note, "images[0] is neither a PNG nor a JPEG image"));
     mesh_import_destroy(got);
     got = with_material(TEXTURED(""), ",'textures':[{'source':0}],'images':[{'uri':'no%20such.png'}]");
-    assert_non_null(strstr(got->note, "the image 'no such.png' of material '' does not exist"));
+    assert_non_null(strstr(got->note, "the image 'no%20such.png' of material '' does not exist"));
     mesh_import_destroy(got);
+}
+
+/* %25 is decoded once: to the name a%20b.png, and not to a b.png. */
+static void names_of_images_are_decoded_once(void **state)
+{
+    (void)state;
+    put_text("a b.png", "x");
+    for (int there = 0; there < 2; there++) {
+        mesh_import *got = with_material(TEXTURED(""), ",'textures':[{'source':0}],'images':[{'uri':'a%2520b.png'}]");
+        assert_true(there ? strstr(got->materials[0].texture, "a%20b.png") != NULL : !got->materials[0].texture);
+        mesh_import_destroy(got);
+        put_text("a%20b.png", "x");
+    }
 }
 
 static void assert_first_uv(const char *info, double u, double v)
@@ -667,6 +680,7 @@ int main(void)
         cmocka_unit_test(colors_of_vertices_are_the_materials),
         cmocka_unit_test(a_texture_without_coordinates_is_left_out),
         cmocka_unit_test(images_inside_the_file_are_carried),
+        cmocka_unit_test(names_of_images_are_decoded_once),
         cmocka_unit_test(texture_coordinates_are_chosen_and_moved),
         cmocka_unit_test(glass_has_its_numbers),
         cmocka_unit_test(cameras_and_lights_are_read),
