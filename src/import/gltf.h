@@ -3,8 +3,8 @@
  * References in comments are to the sections of the glTF 2.0 specification of the Khronos Group, version 2.0.1. All
  * numbers are doubles; coordinates have the axes of the file: x to the right, y up, z towards the viewer. Ownership: a
  * gltf_file owns what it has read, and the views of it in accessors. Errors: STATUS_BAD_INPUT with the item that is
- * wrong, such as "accessors[3].count"; `why` already has the path. An accessor only views bytes; one without bytes, whose
- * elements are 0, has no more of them than the file and the buffers that were read have bytes. */
+ * wrong, such as "accessors[3].count"; `why` already has the path. An accessor only views bytes; one without bytes,
+ * whose elements are 0, has no more of them than the file and the buffers that were read have bytes. */
 #pragma once
 
 #include "import/plain.h"

@@ -280,8 +280,12 @@ static status read_file(const gltf_file *g, gltf_item of, const char *uri, file_
     else if (fd < 0)
         code = diagnose(g->why, STATUS_BAD_INPUT, "put this file where the mesh file expects it, or export both again",
                         "needs the file '%.200s': %s", name, reason);
-    else
-        code = files_read(g->req, fd, FILE_BUFFER, text, g->why);
+    else {
+        diagnostic bad = {.what = ""};
+        code = files_read(g->req, fd, FILE_BUFFER, text, &bad);
+        if (code != STATUS_OK)
+            diagnose(g->why, code, bad.remedy, "needs the file '%.200s': %s", name, bad.what);
+    }
     free(name);
     return code;
 }

@@ -36,7 +36,8 @@ typedef struct file_text {
 } file_text;
 
 /* Reads an open file, or maps it, and closes it; one that gzip compressed, but no FILE_BUFFER, is decompressed, to at
- * most a quarter of the limit of memory. files_release frees the text. STATUS_BAD_INPUT also if the check of the request refuses it. */
+ * most a quarter of the limit of memory. files_release frees the text. STATUS_BAD_INPUT also if the check of the
+ * request refuses it. */
 status files_read(const request *req, int fd, file_kind kind, file_text *text, diagnostic *why);
 void files_release(file_text *text);
 
