@@ -87,6 +87,7 @@ status flat_material(const request *req, flat_mesh *flat, const mesh_wire_materi
 void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *number);
 /* Adds a camera or a light, unless there are too many; the name is copied, NULL: none. */
 status flat_view(const request *req, flat_mesh *flat, const mesh_wire_view *values, const char *name, diagnostic *why);
+#define FLAT_FEW_CORNERS "faces with fewer than three corners are left out"
 /* Adds a sentence to the note, unless it is there already. */
 void flat_note(flat_mesh *flat, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Writes the wire format (mesh_wire.h). STATUS_FAILURE if `to` cannot be written. */

@@ -311,7 +311,7 @@ static status assemble(obj_file *f)
         if (o->colors)
             flat_note(f->flat, "colours of vertices are ignored");
         if (o->narrow)
-            flat_note(f->flat, "faces with fewer than three corners are left out");
+            flat_note(f->flat, FLAT_FEW_CORNERS);
         triangles += o->corner_count - 2 * o->face_count;
         f->flat->with_uvs |= o->highest.uv > 0;
         f->flat->with_normals |= o->highest.normal > 0;

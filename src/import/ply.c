@@ -433,7 +433,8 @@ static status read_vertices(ply *p, const ply_element *e)
 static status add_face(ply *p, size_t first)
 {
     const size_t count = p->corner_count - first;
-    if (count < 3) { /* a point or a line */
+    if (count < 3) {
+        flat_note(p->flat, FLAT_FEW_CORNERS);
         p->corner_count = first;
         return STATUS_OK;
     }

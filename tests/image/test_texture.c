@@ -20,35 +20,6 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-static void assert_near(double a, double b, double tolerance)
-{
-    if (!(fabs(a - b) <= tolerance))
-        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
-}
-
-static void assert_same(vec3 a, vec3 b, double tolerance)
-{
-    assert_near(a.x, b.x, tolerance);
-    assert_near(a.y, b.y, tolerance);
-    assert_near(a.z, b.z, tolerance);
-}
-
-static image *blank(int width, int height)
-{
-    image *img;
-    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
-    return img;
-}
-
-/* Sets the texel x from the left and y from below. */
-static void set(image *img, int x, int y, double r, double g, double b)
-{
-    float *pixel = img->pixel + ((size_t)(img->height - 1 - y) * (size_t)img->width + (size_t)x) * 3;
-    pixel[0] = (float)r;
-    pixel[1] = (float)g;
-    pixel[2] = (float)b;
-}
-
 static image *noise(int width, int height)
 {
     image *img = blank(width, height);

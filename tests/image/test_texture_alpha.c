@@ -11,30 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void near_to(double a, double b, double tolerance)
-{
-    assert_true(fabs(a - b) <= tolerance);
-}
-
-static void assert_color(vec3 a, vec3 b, double tolerance)
-{
-    near_to(a.x, b.x, tolerance), near_to(a.y, b.y, tolerance), near_to(a.z, b.z, tolerance);
-}
-
-static image *blank(int width, int height)
-{
-    image *img;
-    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
-    return img;
-}
-
-/* Sets the texel x from the left and y from below. */
-static void set(image *img, int x, int y, double r, double g, double b)
-{
-    float *pixel = img->pixel + ((size_t)(img->height - 1 - y) * (size_t)img->width + (size_t)x) * 3;
-    pixel[0] = (float)r, pixel[1] = (float)g, pixel[2] = (float)b;
-}
-
 /* A red texel of alpha 1 next to a green one of alpha 0, and a blue row above of alpha 1/2. */
 static image *partly_clear(void)
 {
@@ -53,22 +29,22 @@ static void a_texture_ignores_alpha_and_its_covered_one_weights_colours_by_it(vo
     const texture *c = texture_covered(t);
     assert_non_null(c);
     assert_null(texture_covered(c));
-    assert_color(texture_sample(t, 0.5, 0.25, 0.0), vec3_make(0.5, 0.5, 0.0), 0.0);
+    assert_same(texture_sample(t, 0.5, 0.25, 0.0), vec3_make(0.5, 0.5, 0.0), 0.0);
     /* half red of alpha 1 and half green of alpha 0: red, and alpha 1/2 */
-    assert_color(texture_sample(c, 0.5, 0.25, 0.0), vec3_make(1.0, 0.0, 0.0), 0.0);
-    near_to(texture_alpha(c, 0.5, 0.25), 0.5, 0.0);
-    near_to(texture_alpha(c, 0.625, 0.25), 0.25, 0.0);
+    assert_same(texture_sample(c, 0.5, 0.25, 0.0), vec3_make(1.0, 0.0, 0.0), 0.0);
+    assert_near(texture_alpha(c, 0.5, 0.25), 0.5, 0.0);
+    assert_near(texture_alpha(c, 0.625, 0.25), 0.25, 0.0);
     /* in the middle: red 1/4, green 0, blue 2/4 x 1/2, over alpha 1/4 + 1/4 */
-    assert_color(texture_sample(c, 0.5, 0.5, 0.0), vec3_make(0.5, 0.0, 0.5), 1e-15);
-    near_to(texture_alpha(c, 0.5, 0.5), 0.5, 0.0);
+    assert_same(texture_sample(c, 0.5, 0.5, 0.0), vec3_make(0.5, 0.0, 0.5), 1e-15);
+    assert_near(texture_alpha(c, 0.5, 0.5), 0.5, 0.0);
     /* the mean of the image in the last level, with the same weights; alpha does not depend on the footprint */
-    assert_color(texture_sample(c, 0.9, 0.1, 1.0), vec3_make(0.5, 0.0, 0.5), 1e-7);
-    assert_color(texture_sample(t, 0.9, 0.1, 1.0), vec3_make(0.25, 0.25, 0.5), 1e-7);
+    assert_same(texture_sample(c, 0.9, 0.1, 1.0), vec3_make(0.5, 0.0, 0.5), 1e-7);
+    assert_same(texture_sample(t, 0.9, 0.1, 1.0), vec3_make(0.25, 0.25, 0.5), 1e-7);
     texture_release(t);
     t = owned(partly_clear(), TEXTURE_REPEAT, TEXTURE_NEAREST);
-    near_to(texture_alpha(texture_covered(t), 0.7, 0.2), 0.0, 0.0);
-    near_to(texture_alpha(texture_covered(t), 0.2, -0.8), 1.0, 0.0);
-    near_to(texture_alpha(texture_covered(t), (double)NAN, 0.2), 1.0, 0.0);
+    assert_near(texture_alpha(texture_covered(t), 0.7, 0.2), 0.0, 0.0);
+    assert_near(texture_alpha(texture_covered(t), 0.2, -0.8), 1.0, 0.0);
+    assert_near(texture_alpha(texture_covered(t), (double)NAN, 0.2), 1.0, 0.0);
     texture_release(t);
 }
 
@@ -123,7 +99,7 @@ static void a_packed_texture_keeps_its_alpha(void **state)
     pack_reader from = {.read = get_bytes, .context = &bytes, .left = to.size, .hash = HASH_START};
     assert_int_equal(texture_unpack(&from, &back, NULL), STATUS_OK);
     assert_true(texture_hash(back, 1) == texture_hash(t, 1));
-    near_to(texture_alpha(texture_covered(back), 0.625, 0.25), 0.25, 0.0);
+    assert_near(texture_alpha(texture_covered(back), 0.625, 0.25), 0.25, 0.0);
     texture_release(back), texture_release(t);
 }
 
@@ -144,8 +120,8 @@ static void covered_colours_do_not_depend_on_the_instruction_set(void **state)
                 r[k] = g[k] = b[k] = 1.0;
             tint[level](texture_covered(t), POINTS, u, v, footprint, r, g, b);
             for (int k = 0; k < POINTS; k++)
-                assert_color(vec3_make(r[k], g[k], b[k]), texture_sample(texture_covered(t), u[k], v[k], footprint[k]),
-                             0.0);
+                assert_same(vec3_make(r[k], g[k], b[k]), texture_sample(texture_covered(t), u[k], v[k], footprint[k]),
+                            0.0);
         }
         texture_release(t);
     }

@@ -1,4 +1,4 @@
-/* What a texture holds, and one from a file or an image. */
+/* What a texture holds, one from a file or an image, and comparisons. */
 #pragma once
 
 #include <setjmp.h>
@@ -8,6 +8,8 @@
 #include <cmocka.h>
 
 #include "image/texture_parts.h"
+
+#include <math.h>
 
 static inline status texture_read(const char *path, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                                   texture_filter filter, texture **out, diagnostic *why)
@@ -54,4 +56,33 @@ static inline texture *owned(image *img, texture_wrap wrap, texture_filter filte
     texture *t = textured(img, wrap, filter);
     image_destroy(img);
     return t;
+}
+
+static inline void assert_near(double a, double b, double tolerance)
+{
+    if (!(fabs(a - b) <= tolerance))
+        fail_msg("%.17g is not %.17g within %g", a, b, tolerance);
+}
+
+static inline void assert_same(vec3 a, vec3 b, double tolerance)
+{
+    assert_near(a.x, b.x, tolerance);
+    assert_near(a.y, b.y, tolerance);
+    assert_near(a.z, b.z, tolerance);
+}
+
+static inline image *blank(int width, int height)
+{
+    image *img;
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
+    return img;
+}
+
+/* Sets the texel x from the left and y from below. */
+static inline void set(image *img, int x, int y, double r, double g, double b)
+{
+    float *pixel = img->pixel + ((size_t)(img->height - 1 - y) * (size_t)img->width + (size_t)x) * 3;
+    pixel[0] = (float)r;
+    pixel[1] = (float)g;
+    pixel[2] = (float)b;
 }

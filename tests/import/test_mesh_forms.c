@@ -96,6 +96,9 @@ static void looks_that_are_not_read_are_notes(void **state)
                "end_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n",
          COLOR_NOTE},
         {ASCII "element vertex 4\n" XYZ FACE "property uchar red\nend_header\n" CORNERS "4 0 1 2 3 9\n", NULL},
+        {ASCII "element vertex 4\n" XYZ "element face 3\nproperty list uchar int vertex_indices\nend_header\n" CORNERS
+               "2 0 1\n4 0 1 2 3\n0\n",
+         "faces with fewer than three corners are left out"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         mesh_import *got = read_text("looks.ply", cases[i].text);
