@@ -7,6 +7,7 @@
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "geometry/hierarchy/hierarchy.h"
 #include "report/json.h"
 #include "report/mesh_writers.h"
 #include "scene/assets/mesh_file.h"
@@ -235,17 +236,30 @@ static status load_mesh(mesh_request *request, diagnostic *why)
     return STATUS_OK;
 }
 
+/* What a scene with a transparent solid of the mesh would say. */
+static status describe(const mesh_request *request, FILE *stream, diagnostic *why)
+{
+    const mesh *m = request->made, *const * layers;
+    diagnostic refusal = {.what = ""};
+    int count;
+    const status code = m->closed ? hierarchy_layers(m, 1, &layers, &count, &refusal) : STATUS_OK;
+    if (code != STATUS_OK && code != STATUS_BAD_INPUT)
+        return diagnose(why, code, refusal.remedy, "%s", refusal.what);
+    const char *text = code == STATUS_OK ? NULL : refusal.what;
+    if (request->json)
+        return json_put(stream, mesh_rows_json(m, text), why);
+    mesh_rows_text(stream, m, text);
+    return STATUS_OK;
+}
+
 static status write_to(const void *content, FILE *stream, diagnostic *why)
 {
     const mesh_request *request = content;
-    const mesh *m = request->made;
     if (request->format != MESH_FORMAT_COUNT)
-        TRY(mesh_write(m, request->imported, (mesh_format)request->format, request->generate, request->output, stream,
-                       why));
-    else if (request->json)
-        return json_put(stream, mesh_rows_json(m), why);
+        TRY(mesh_write(request->made, request->imported, (mesh_format)request->format, request->generate,
+                       request->output, stream, why));
     else
-        mesh_rows_text(stream, m);
+        TRY(describe(request, stream, why));
     return cancel_check(why);
 }
 

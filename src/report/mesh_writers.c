@@ -31,20 +31,28 @@ static void print_vector(FILE *stream, const char *name, vec3 v)
 
 static void print_hole(FILE *stream, const mesh *m)
 {
+    static const char *const faults[MESH_FAULT_COUNT] = {
+        [MESH_ODD] = "", /* see below */
+        [MESH_ONE_SIDED] = "inconsistent orientation at",
+        [MESH_UNBALANCED] = "triangles do not agree about the inside at",
+        [MESH_CANCELLED] = "each triangle lies on one that faces the other way, as at"};
     const mesh_hole *h = &m->hole;
-    if (m->triangle_count == 0)
-        fputs("closed     no: it has points only\n", stream);
-    else if (h->sharing == 0)
-        fputs("closed     no: every triangle has zero area\n", stream);
-    else if (h->sharing == 2)
-        fprintf(stream, "closed     no: inconsistent orientation at the edge from vertex %lu to %lu of triangle %zu\n",
-                (unsigned long)h->from, (unsigned long)h->to, h->triangle);
-    else
-        fprintf(stream, "closed     no: the edge from vertex %lu to %lu of triangle %zu is shared by %d, not 2\n",
-                (unsigned long)h->from, (unsigned long)h->to, h->triangle, h->sharing);
+    if (m->triangle_count == 0 || h->fault == MESH_FLAT) {
+        fprintf(stream, "closed     no: %s\n",
+                m->triangle_count ? "every triangle has zero area" : "it has points only");
+        return;
+    }
+    fprintf(stream, "closed     no: %s%sthe edge from vertex %lu to %lu of triangle %zu", faults[h->fault],
+            h->fault == MESH_ODD ? "" : " ", (unsigned long)h->from, (unsigned long)h->to, h->triangle);
+    if (h->fault != MESH_ONE_SIDED)
+        fprintf(stream, h->fault == MESH_ODD ? " is shared by %d, not %s" : ", which %d share%s", h->sharing,
+                h->fault != MESH_ODD ? ""
+                : h->sharing == 1    ? "2"
+                                     : "an even number");
+    putc('\n', stream);
 }
 
-void mesh_rows_text(FILE *stream, const mesh *m)
+void mesh_rows_text(FILE *stream, const mesh *m, const char *refusal)
 {
     char number[NUMBER_TEXT_MAX];
     fprintf(stream, "triangles  %zu\nvertices   %zu\n", m->triangle_count, m->vertex_count);
@@ -57,6 +65,10 @@ void mesh_rows_text(FILE *stream, const mesh *m)
         fprintf(stream, "closed     yes\nvolume     %s\n", number_format_digits(mesh_volume(m), 12, number));
     else
         print_hole(stream, m);
+    if (m->shell_count > 1 || m->crowded)
+        fprintf(stream, "shells     %zu\n", m->shell_count);
+    if (refusal)
+        fprintf(stream, "solid      no: %s\n", refusal);
     fprintf(stream, "has       %s%s%s positions\n", m->normals ? " normals," : "",
             m->uvs ? " texture coordinates," : "", m->single ? " single-precision" : " double-precision");
     if (m->slot_count > 1)
@@ -72,21 +84,21 @@ static json_t *vector_json(vec3 v)
 static json_t *hole_json(const mesh *m)
 {
     const mesh_hole *h = &m->hole;
-    if (m->closed || h->sharing == 0)
+    if (m->closed || h->fault == MESH_FLAT)
         return json_null();
     return json_pack("{s:I,s:I,s:I,s:i}", "from", (json_int_t)h->from, "to", (json_int_t)h->to, "triangle",
                      (json_int_t)h->triangle, "sharing", h->sharing);
 }
 
-json_t *mesh_rows_json(const mesh *m)
+json_t *mesh_rows_json(const mesh *m, const char *refusal)
 {
-    return json_pack("{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
-                     (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low",
-                     vector_json(m->bounds.low), "high", vector_json(m->bounds.high), "area",
-                     json_of_real(mesh_area(m)), "closed", m->closed, "volume",
-                     json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "normals",
-                     m->normals != NULL, "texture_coordinates", m->uvs != NULL, "single", m->single, "materials",
-                     m->slot_count, "bytes", (json_int_t)memory_bytes(m));
+    return json_pack(
+        "{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:I,s:s?,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
+        (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low", vector_json(m->bounds.low),
+        "high", vector_json(m->bounds.high), "area", json_of_real(mesh_area(m)), "closed", m->closed, "volume",
+        json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "shells",
+        (json_int_t)m->shell_count, "refusal", refusal, "normals", m->normals != NULL, "texture_coordinates",
+        m->uvs != NULL, "single", m->single, "materials", m->slot_count, "bytes", (json_int_t)memory_bytes(m));
 }
 
 /* --- formats of other programs --- */

@@ -7,8 +7,9 @@
 #include <jansson.h>
 #include <stdio.h>
 
-void mesh_rows_text(FILE *stream, const mesh *m);
-json_t *mesh_rows_json(const mesh *m);
+/* refusal: why a closed mesh cannot be transparent (hierarchy_layers), or NULL. */
+void mesh_rows_text(FILE *stream, const mesh *m, const char *refusal);
+json_t *mesh_rows_json(const mesh *m, const char *refusal);
 
 /*   obj  Wavefront: positions and triangles
  *   ply  Stanford, binary, little-endian: all data of the mesh (normals nx ny nz, texture coordinates s t, slots

@@ -358,6 +358,34 @@ check "mesh --json" is "$(json schema triangles vertices closed hole single)" "$
 run mesh --generate sparse --count 3 --json
 check "mesh --json: no volume, but the hole" is "$(json closed volume hole.triangle hole.sharing)" \
     "$(lines false null 0 1)"
+boxes() { # boxes FROM,TO,SIGN...: along x, as OBJ; SIGN -1: inside out
+    local from to sign count=0
+    for box; do
+        IFS=, read -r from to sign <<<"$box"
+        for x in "$from" "$to"; do printf 'v %s 0 0\nv %s 1 0\nv %s 1 1\nv %s 0 1\n' "$x" "$x" "$x" "$x"; done
+        for face in '1 4 3 2' '5 6 7 8' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8'; do
+            # shellcheck disable=SC2086
+            set -- $face
+            [[ $sign == 1 ]] || set -- "$3" "$2" "$1" "$4"
+            echo "f $(($1 + count)) $(($2 + count)) $(($3 + count)) $(($4 + count))"
+        done
+        count=$((count + 8))
+    done
+}
+said() { tr -s ' ' <out | grep -E '^(closed|volume|shells|solid)' | tr '\n' ' '; }
+boxes 0,1,1 1,3,1 >glued.obj
+run mesh glued.obj
+check "mesh: glued boxes are one shell" is "$code $(said)" "0 closed yes volume 3 shells 1 "
+boxes 0,2,1 1,3,-1 >crossing.obj
+run mesh crossing.obj
+check "mesh: what a transparent solid would be refused for" is "$code $(said | cut -d, -f1)" \
+    "0 closed yes volume 0 shells 2 solid no: shells of the mesh overlap"
+run mesh crossing.obj --json
+check "mesh --json: the refusal" is "$(json closed shells) $(json refusal | grep -c 'shells of the mesh overlap')" \
+    "$(lines true 2) 1"
+boxes 0,1,1 0,1,-1 >twosided.obj
+run mesh twosided.obj
+check "mesh: faces to both sides bound nothing" grep -q '^closed  *no: each triangle lies on one that faces the' out
 # checksums of the dumps of these triangles by the peers' program embree_bench, whose axes are the world's
 run mesh --generate sparse --count 100 -f obj
 check "mesh -f obj equals the dump of embree_bench in right-handed axes" is "$(awk '

@@ -122,15 +122,16 @@ static void triangles_are_dropped(void **state)
     assert_int_equal(mesh_create(8, 15, false, false, false, &m, NULL), STATUS_OK);
     memcpy(m->vertices, c->vertices, 8 * sizeof *m->vertices);
     memcpy(m->triangles, c->triangles, 12 * sizeof *m->triangles);
-    m->triangles[12] = (mesh_triangle){{3, 3, 5}};
+    m->triangles[0] = m->triangles[12] = (mesh_triangle){{3, 3, 5}}; /* and a hole */
     m->triangles[13] = c->triangles[7];
     m->triangles[14] =
         (mesh_triangle){{c->triangles[7].corner[1], c->triangles[7].corner[0], c->triangles[7].corner[2]}};
     mesh_release(c);
     mesh_repairs r;
     m = repaired(finished(m), 0.0, &r);
-    assert_int_equal(r.degenerate, 1);
+    assert_int_equal(r.degenerate, 2);
     assert_int_equal(r.duplicate, 2);
+    assert_int_equal(r.holes, 1);
     assert_int_equal(m->triangle_count, 12);
     free(r.fills);
     mesh_release(m);
@@ -252,25 +253,29 @@ static void holes_that_meet_are_filled(void **state)
 }
 
 /* Two pyramids whose square bases are divided by one diagonal: four triangles meet there, as where a reader divides two
- * quadrilaterals between the same corners. */
+ * quadrilaterals between the same corners. A hole keeps the mesh from being closed as it is. */
 static void two_divisions_by_one_diagonal_are_made_different(void **state)
 {
     (void)state;
-    static const vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, -1, 1}, {0.5, 2, -1}};
+    static const vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, -1, 1}, {0.4, 3, -2}};
     /* the quadrilaterals 0 1 2 3 and 0 4 2 5, and sides between them */
     static const mesh_triangle list[] = {{{0, 1, 2}}, {{0, 2, 3}}, {{0, 4, 2}}, {{0, 2, 5}},
                                          {{1, 0, 4}}, {{2, 1, 4}}, {{0, 3, 5}}, {{3, 2, 5}}};
-    mesh *m = finished(mesh_of(corners, 6, list, 8));
-    assert_int_equal(m->hole.sharing, 4);
-    mesh_repairs r;
-    mesh *out = NULL;
-    assert_int_equal(mesh_repair(m, 0.0, &r, &out, NULL), STATUS_OK);
-    assert_true(out->closed);
-    assert_int_equal(r.swapped, 1);
-    assert_int_equal(out->triangle_count, 8);
-    free(r.fills);
-    mesh_release(out);
-    mesh_release(m);
+    for (size_t count = 7; count <= 8; count++) {
+        mesh *m = finished(mesh_of(corners, 6, list, count));
+        assert_int_equal(m->closed, count == 8);
+        mesh_repairs r;
+        mesh *out = NULL;
+        assert_int_equal(mesh_repair(m, 0.0, &r, &out, NULL), STATUS_OK);
+        assert_true(out->closed);
+        assert_int_equal(out->crowded, count == 8);
+        assert_int_equal(r.swapped, count == 8 ? 0 : 1);
+        assert_int_equal(r.holes, count == 8 ? 0 : 1);
+        assert_int_equal(out->triangle_count, 8);
+        free(r.fills);
+        mesh_release(out);
+        mesh_release(m);
+    }
 }
 
 /* Random spheres with random triangles missing. */
@@ -322,10 +327,26 @@ static void crowded_edges_are_refused(void **state)
     static const mesh_triangle fin[] = {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}, {{2, 3, 5}}, {{2, 4, 6}}};
     refused_with(mesh_of(corners, 7, fin, 3), 0.0, "to (1, 0, 0) more than two triangles meet", SEPARATE);
     refused_with(mesh_of(corners, 7, fin, 5), 0.1, "to (1, 0, 0) more than two triangles meet", SEPARATE);
-    mesh *m = cubes(2); /* with a common edge, after welding */
+    mesh *m = cubes(2); /* with a common edge, after welding, and a hole */
     put_cube(m, 1, vec3_make(2.01, 2.01, 0.0), 1.0);
+    m->triangle_count--;
     refused_with(m, 0.1, "from (1, 1, 1) to (1, 1, -1) more than two triangles meet",
                  SEPARATE ", or use another distance to weld");
+}
+
+static void shells_that_touch_after_welding_are_closed(void **state)
+{
+    (void)state;
+    mesh *m = cubes(2);
+    put_cube(m, 1, vec3_make(2.01, 0.0, 0.0), 1.0);
+    mesh_repairs r;
+    m = repaired(finished(m), 0.1, &r);
+    assert_true(m->closed && m->crowded);
+    assert_int_equal(m->shell_count, 1);
+    assert_int_equal(m->triangle_count, 24);
+    assert_int_equal(r.welded, 4);
+    free(r.fills);
+    mesh_release(m);
 }
 
 static void what_has_no_volume_is_refused(void **state)
@@ -382,6 +403,7 @@ int main(void)
         cmocka_unit_test(two_divisions_by_one_diagonal_are_made_different),
         cmocka_unit_test(random_holes_are_filled),
         cmocka_unit_test(crowded_edges_are_refused),
+        cmocka_unit_test(shells_that_touch_after_welding_are_closed),
         cmocka_unit_test(what_has_no_volume_is_refused),
         cmocka_unit_test(what_cannot_be_closed_is_refused),
     };

@@ -244,7 +244,7 @@ static void points_are_three_numbers_a_line(void **state)
     text_writer w;
     char *described;
     assert_int_equal(text_writer_open(&w, NULL), STATUS_OK);
-    mesh_rows_text(w.stream, got->mesh);
+    mesh_rows_text(w.stream, got->mesh, NULL);
     assert_int_equal(text_writer_close(&w, &described, NULL, NULL), STATUS_OK);
     assert_non_null(strstr(described, "\nto         4 5 6\n"));
     assert_non_null(strstr(described, "\nclosed     no: it has points only\n"));

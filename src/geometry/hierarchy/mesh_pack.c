@@ -237,13 +237,13 @@ status hierarchy_unpack(const mesh *m, pack_reader *from, hierarchy **out, hiera
 /* The head of a packed mesh. */
 typedef struct mesh_head {
     uint64_t vertices, triangles;
-    int64_t normals, uvs, slots, slot_count, closed, single; /* the first three: whether there are any */
+    int64_t normals, uvs, slots, slot_count, closed, crowded, single; /* the first three: whether there are any */
     bounds3 bounds;
     uint64_t hole_from, hole_to, hole_triangle;
-    int64_t hole_sharing;
+    int64_t hole_sharing, hole_fault;
     uint64_t shells, hierarchies;
 } mesh_head;
-_Static_assert(sizeof(mesh_head) == 20 * 8, "no padding");
+_Static_assert(sizeof(mesh_head) == 22 * 8, "no padding");
 
 typedef struct mesh_array {
     void *bytes;
@@ -275,12 +275,14 @@ static mesh_head head_of(const mesh *m)
                       .slots = m->slots != NULL,
                       .slot_count = m->slot_count,
                       .closed = m->closed,
+                      .crowded = m->crowded,
                       .single = m->single,
                       .bounds = m->bounds,
                       .hole_from = m->hole.from,
                       .hole_to = m->hole.to,
                       .hole_triangle = m->hole.triangle,
                       .hole_sharing = m->hole.sharing,
+                      .hole_fault = m->hole.fault,
                       .shells = m->shell_count};
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
         head.hierarchies += stored_hierarchy(m, kind) != NULL;
@@ -313,7 +315,7 @@ static bool within(const double *values, int count)
 
 static status check_head(const mesh_head *h, const pack_reader *from, diagnostic *why)
 {
-    const uint64_t flags = (uint64_t)(h->normals | h->uvs | h->slots | h->closed | h->single);
+    const uint64_t flags = (uint64_t)(h->normals | h->uvs | h->slots | h->closed | h->crowded | h->single);
     if (flags > 1 || h->slot_count < 1 || h->slot_count > MESH_SLOTS_MAX || h->hierarchies > HIERARCHY_KIND_COUNT)
         return pack_damaged(why, "the head of a mesh");
     if (!pack_holds(from, h->vertices, sizeof(vec3)) || !pack_holds(from, h->triangles, sizeof(mesh_triangle)))
@@ -323,7 +325,8 @@ static status check_head(const mesh_head *h, const pack_reader *from, diagnostic
     if (h->shells > h->triangles)
         return pack_damaged(why, "the shells of a mesh");
     const bool hole = h->hole_from || h->hole_to || h->hole_triangle;
-    if (hole && (h->hole_from >= h->vertices || h->hole_to >= h->vertices || h->hole_triangle >= h->triangles))
+    if (h->hole_fault < 0 || h->hole_fault >= MESH_FAULT_COUNT ||
+        (hole && (h->hole_from >= h->vertices || h->hole_to >= h->vertices || h->hole_triangle >= h->triangles)))
         return pack_damaged(why, "the hole of a mesh");
     return STATUS_OK;
 }
@@ -361,13 +364,15 @@ static status unpack_into(mesh *m, const mesh_head *head, pack_reader *from, dia
     list_arrays(m, arrays);
     m->slot_count = (int)head->slot_count;
     m->closed = head->closed;
+    m->crowded = head->crowded;
     m->single = head->single;
     m->shell_count = head->shells;
     m->bounds = head->bounds;
     m->hole = (mesh_hole){.from = (uint32_t)head->hole_from,
                           .to = (uint32_t)head->hole_to,
                           .triangle = head->hole_triangle,
-                          .sharing = (int)head->hole_sharing};
+                          .sharing = (int)head->hole_sharing,
+                          .fault = (mesh_fault)head->hole_fault};
     for (int i = 0; i < MESH_ARRAYS; i++)
         TRY(pack_get(from, arrays[i].bytes, arrays[i].size, why));
     for (int i = 0; i < m->slot_count; i++)

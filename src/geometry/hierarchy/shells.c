@@ -31,19 +31,22 @@ typedef struct shell_pair {
     uint32_t one, other;
     int winding; /* of the other around a corner of the one */
     bool cross;
+    bool touch; /* at a common edge: mesh_touch */
     vec3 place; /* where they cross */
 } shell_pair;
 
 typedef struct shell_room {
     const mesh *m;
     const hierarchy *tree;
-    uint32_t *shell_of; /* by triangle; UINT32_MAX: two equal corners */
+    mesh_shell_list list;
+    uint32_t *shell_of; /* by triangle, its list's: then the shell's number; UINT32_MAX: it is in none */
     shell *shells;      /* shell_count and one more, for the end of the pairs */
     shell_pair *pairs;
     size_t count, pair_count, pair_room;
     uint32_t *order;
     uint32_t at; /* the shell for which rays are searched */
     vec3 origin, direction;
+    int winding; /* of shell `at` around the origin */
     int layer_count;
     bool turns;
 } shell_room;
@@ -65,7 +68,8 @@ static const vec3 *corner_of(const mesh *m, size_t t, int k)
 static status measure_shells(shell_room *r, diagnostic *why)
 {
     const mesh *m = r->m;
-    TRY(mesh_shells(m, &r->shell_of, why));
+    TRY(mesh_shells(m, &r->list, why));
+    r->shell_of = r->list.first;
     r->shells = calloc(m->shell_count + 1, sizeof *r->shells);
     r->order = malloc((m->shell_count + 1) * sizeof *r->order);
     if (!r->shells || !r->order)
@@ -159,23 +163,27 @@ static shell_pair *pair_with(shell_room *r, uint32_t one, uint32_t other)
     return count ? bsearch(&wanted, r->pairs + begin, count, sizeof wanted, compare_pairs) : NULL;
 }
 
+static void note_touches(shell_room *r)
+{
+    for (size_t i = 0; i < r->list.touch_count; i++) {
+        const uint32_t one = r->shell_of[r->list.touches[i].one], other = r->shell_of[r->list.touches[i].other];
+        if (one != other && one != UINT32_MAX && other != UINT32_MAX)
+            pair_with(r, one, other)->touch = pair_with(r, other, one)->touch = true;
+    }
+}
+
 /* --- crossings and winding numbers, by rays --- */
 
 static void meet(void *context, const mesh_hit *hit)
 {
     shell_room *r = context;
     const uint32_t other = r->shell_of[hit->triangle];
-    shell_pair *p = other != r->at ? pair_with(r, r->at, other) : NULL;
+    shell_pair *p = other != r->at && other != UINT32_MAX ? pair_with(r, r->at, other) : NULL;
     if (!p || p->cross)
         return;
     shell_pair *q = pair_with(r, other, r->at);
     p->cross = q->cross = true;
     p->place = q->place = vec3_add(r->origin, vec3_scale(r->direction, hit->t));
-}
-
-static bool before(vec3 a, vec3 b)
-{
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
 /* Whether the box meets that of a shell which is not known to cross shell r->at. */
@@ -187,26 +195,36 @@ static bool may_meet(const shell_room *r, const bounds3 *box)
     return false;
 }
 
-/* Each edge is in two triangles, once in each direction. It is lengthened a little, so that a touch is a crossing. */
+/* The front normal, as long as the triangle's largest coordinate; 0 without an area. */
+static vec3 front_of(const mesh *m, size_t t)
+{
+    const vec3 a = *corner_of(m, t, 0), b = *corner_of(m, t, 1), c = *corner_of(m, t, 2);
+    const vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+    const double length = vec3_length(n), far = fmax(fmax(vec3_length(a), vec3_length(b)), vec3_length(c));
+    return length > 0.0 ? vec3_scale(n, far / length) : vec3_make(0.0, 0.0, 0.0);
+}
+
+/* Edges are lengthened, and moved a little to both sides of their triangle, so that a touch is a crossing, also where
+ * faces of both shells lie in one plane. */
 static void find_crossings(shell_room *r)
 {
-    static const double more = 0x1p-30;
+    static const double more = 0x1p-30, aside = 0x1p-36;
     for (size_t t = 0; t < r->m->triangle_count && !cancel_asked_at(t); t++) {
         r->at = r->shell_of[t];
         for (int k = 0; r->at != UINT32_MAX && k < 3; k++) {
-            const vec3 a = *corner_of(r->m, t, k), b = *corner_of(r->m, t, (k + 1) % 3);
+            const vec3 a = *corner_of(r->m, t, k), b = *corner_of(r->m, t, (k + 1) % 3), out = front_of(r->m, t);
             bounds3 box = {a, a};
             widen(&box, b);
-            if (!before(a, b) || !may_meet(r, &box))
-                continue;
             r->direction = vec3_sub(b, a);
             r->origin = vec3_sub(a, vec3_scale(r->direction, more));
-            const mesh_ray ray = {.origin = r->origin,
-                                  .direction = r->direction,
-                                  .t_max = 1.0 + 2.0 * more,
-                                  .skip = (uint32_t)t,
-                                  .facing = FACING_ANY};
-            ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, meet, r);
+            for (int side = -1; side <= 1 && may_meet(r, &box); side += 2) {
+                const mesh_ray ray = {.origin = vec3_add(r->origin, vec3_scale(out, side * aside)),
+                                      .direction = r->direction,
+                                      .t_max = 1.0 + 2.0 * more,
+                                      .skip = (uint32_t)t,
+                                      .facing = FACING_ANY};
+                ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, meet, r);
+            }
         }
     }
 }
@@ -225,20 +243,26 @@ static void wind(void *context, const mesh_hit *hit)
 {
     shell_room *r = context;
     const uint32_t other = r->shell_of[hit->triangle];
-    shell_pair *p = other != r->at ? pair_with(r, r->at, other) : NULL;
+    const int turn = hit->facing == FACING_BACK ? 1 : -1;
+    shell_pair *p = other != r->at && other != UINT32_MAX ? pair_with(r, r->at, other) : NULL;
     if (p)
-        p->winding += hit->facing == FACING_BACK ? 1 : -1;
+        p->winding += turn;
+    r->winding += other == r->at ? turn : 0;
 }
 
-/* Around a corner of each shell, along a direction that seldom hits an edge; one that hits an edge gives a number that
- * a shell cannot have, and the next direction is tried. None is good around which a shell winds twice. */
+/* Directions that seldom hit an edge. */
+enum { DIRECTIONS = 3 };
+static const vec3 directions[DIRECTIONS] = {
+    {0.5396, 0.6180, 0.5716}, {-0.4142, 0.7321, 0.5408}, {0.3679, -0.5403, 0.7568}};
+
+/* Around a corner of each shell; a direction that hits an edge gives a number that a shell cannot have, and the next
+ * one is tried. None is good around which a shell winds twice. */
 static status find_windings(shell_room *r, diagnostic *why)
 {
-    static const vec3 directions[] = {{0.5396, 0.6180, 0.5716}, {-0.4142, 0.7321, 0.5408}, {0.3679, -0.5403, 0.7568}};
     for (r->at = 0; r->at < r->count && !cancel_asked_at(r->at); r->at++) {
         const size_t begin = r->shells[r->at].pairs, end = r->shells[r->at + 1].pairs;
         const shell_pair *bad = NULL;
-        for (int k = 0; k < 3 && begin < end && (k == 0 || bad); k++) {
+        for (int k = 0; k < DIRECTIONS && begin < end && (k == 0 || bad); k++) {
             bad = NULL;
             for (size_t p = begin; p < end; p++)
                 r->pairs[p].winding = 0;
@@ -250,12 +274,49 @@ static status find_windings(shell_room *r, diagnostic *why)
             ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, wind, r);
             for (size_t p = begin; p < end; p++) {
                 const int turned = r->shells[r->pairs[p].other].volume6 < 0.0 ? -1 : 1;
-                if (!r->pairs[p].cross && r->pairs[p].winding != 0 && r->pairs[p].winding != turned)
+                if (!r->pairs[p].cross && !r->pairs[p].touch && r->pairs[p].winding != 0 &&
+                    r->pairs[p].winding != turned)
                     bad = &r->pairs[p];
             }
         }
         if (bad && !cancel_asked())
             return refuse(r, bad, "and it is not clear whether one lies in the other", why);
+    }
+    return cancel_check(why);
+}
+
+/* Whether the winding number of the shell of triangle t next to its centre is as an inside and an outside have it. */
+static bool is_sound(shell_room *r, size_t t)
+{
+    const vec3 a = *corner_of(r->m, t, 0), b = *corner_of(r->m, t, 1), c = *corner_of(r->m, t, 2),
+               out = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+    const int outside = r->shells[r->at].volume6 < 0.0 ? -1 : 0;
+    bool sound = !(vec3_length(out) > 0.0);
+    for (int k = 0; k < DIRECTIONS && !sound; k++) {
+        const mesh_ray ray = {.origin = vec3_scale(vec3_add(a, vec3_add(b, c)), 1.0 / 3.0),
+                              .direction = directions[k],
+                              .t_max = HUGE_VAL,
+                              .skip = (uint32_t)t,
+                              .facing = FACING_ANY};
+        r->winding = 0;
+        ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, wind, r);
+        sound = r->winding == outside + !(vec3_dot(out, directions[k]) > 0.0);
+    }
+    return sound;
+}
+
+/* Where triangles meet at edges, a shell may be in one with another one that lies partly in its faces. */
+static status check_shells(shell_room *r, diagnostic *why)
+{
+    for (size_t t = 0; t < r->m->triangle_count && !cancel_asked_at(t); t++) {
+        r->at = r->shell_of[t];
+        if (r->at == UINT32_MAX || is_sound(r, t) || cancel_asked())
+            continue;
+        const vec3 a = *corner_of(r->m, t, 0);
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY,
+                        "parts of the mesh that share edges lie in each other in a way that has no inside, at triangle "
+                        "%zu, from (%.9g, %.9g, %.9g)",
+                        t, a.x, a.y, a.z);
     }
     return cancel_check(why);
 }
@@ -269,11 +330,13 @@ static int compare_sizes(const void *one, const void *other)
     return x != y ? (x > y ? -1 : 1) : a < b ? -1 : a > b;
 }
 
-/* The winding number of the layer's shells so far around the shell; *across: one that the shell crosses, or NULL. */
-static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_pair **across)
+/* The winding number of the layer's shells so far around the shell; *across: one that the shell crosses, or NULL;
+ * *apart: whether it crosses or touches one. */
+static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_pair **across, bool *apart)
 {
     int sum = 0;
     *across = NULL;
+    *apart = false;
     for (size_t p = r->shells[at].pairs; p < r->shells[at + 1].pairs; p++) {
         const shell *other = &r->shells[r->pairs[p].other];
         if (other->layer != layer)
@@ -281,19 +344,21 @@ static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_p
         sum += other->turned ? -r->pairs[p].winding : r->pairs[p].winding;
         if (r->pairs[p].cross)
             *across = &r->pairs[p];
+        *apart |= r->pairs[p].cross || r->pairs[p].touch;
     }
     return sum;
 }
 
-/* The first layer that has the winding number around the shell, and no shell that it crosses; -1: none. *across: one
- * of those that it crosses. */
+/* The first layer that has the winding number around the shell, and no shell that it crosses or touches; -1: none.
+ * *across: one of those that it crosses. */
 static int layer_with(const shell_room *r, uint32_t at, int winding, const shell_pair **across)
 {
     const shell_pair *found;
     *across = NULL;
     for (int layer = 0; layer < r->layer_count; layer++) {
-        const int sum = winding_in(r, at, layer, &found);
-        if (!found && sum == winding)
+        bool apart;
+        const int sum = winding_in(r, at, layer, &found, &apart);
+        if (!apart && sum == winding)
             return layer;
         *across = found ? found : *across;
     }
@@ -326,7 +391,7 @@ static status place_shell(shell_room *r, uint32_t at, diagnostic *why)
     if (s->layer >= 0)
         return STATUS_OK;
     if (r->layer_count == LAYERS_MAX)
-        return refuse(r, across ? across : pair_around(r, at), "and more than 32 lie in one another", why);
+        return refuse(r, across ? across : pair_around(r, at), "and are nested more than 32 deep", why);
     s->layer = r->layer_count++;
     return STATUS_OK;
 }
@@ -398,10 +463,10 @@ static status copy_layers(const shell_room *r, const mesh **layers, diagnostic *
     return code;
 }
 
-/* Most meshes of many shells have boxes that do not overlap, and no hollow. */
+/* Most meshes of many shells have boxes that do not overlap, no hollow, and no triangle that is in no shell. */
 static bool is_plain(const shell_room *r)
 {
-    bool plain = r->pair_count == 0;
+    bool plain = r->pair_count == 0 && !r->m->crowded;
     for (size_t s = 0; s < r->count; s++)
         plain &= !(r->shells[s].volume6 < 0.0);
     return plain;
@@ -420,8 +485,12 @@ static status divide(shell_room *r, int threads, diagnostic *why)
     status code = hierarchy_build(r->m, HIERARCHY_BVH, threads, &tree, why);
     if (code == STATUS_OK) {
         r->tree = tree;
-        find_crossings(r);
-        code = find_windings(r, why);
+        note_touches(r);
+        if (r->m->crowded)
+            code = check_shells(r, why);
+        if (code == STATUS_OK)
+            find_crossings(r);
+        THEN(code, find_windings(r, why));
     }
     THEN(code, place_shells(r, why));
     hierarchy_destroy(tree);
@@ -431,21 +500,21 @@ static status divide(shell_room *r, int threads, diagnostic *why)
 static status make_layers(mesh *m, int threads, diagnostic *why)
 {
     shell_room r = {.m = m, .layer_count = 1};
-    status code = m->shell_count > 1 ? divide(&r, threads, why) : STATUS_OK;
+    status code = m->shell_count > 1 || m->crowded ? divide(&r, threads, why) : STATUS_OK;
     struct mesh_shared *shared = m->shared;
     if (code == STATUS_OK && !(shared->layers = calloc((size_t)r.layer_count, sizeof *shared->layers)))
         code = out_of_memory(why);
     if (code == STATUS_OK) {
         shared->layer_count = r.layer_count;
         shared->layers[0] = m;
-        if (r.layer_count > 1 || r.turns) {
+        if (r.layer_count > 1 || r.turns || m->crowded) {
             shared->layers[0] = NULL;
             code = copy_layers(&r, shared->layers, why);
         }
     }
     if (code != STATUS_OK)
         mesh_forget_layers(m);
-    free(r.shell_of);
+    mesh_shells_free(&r.list);
     free(r.shells);
     free(r.order);
     free(r.pairs);

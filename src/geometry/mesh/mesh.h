@@ -2,7 +2,8 @@
  * without triangles, a cloud of points.
  * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
  * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
- * once in each direction, is closed: it bounds a volume, which is behind the fronts.
+ * once in each direction, is closed: it bounds a volume, which is behind the fronts. So is one whose closed parts touch
+ * at edges and faces (mesh_finish).
  *
  * A finished mesh is immutable (except for mesh_move) and shared: mesh_retain and mesh_release count its owners, from
  * any thread. Generators and readers create a mesh with mesh_create, fill it, and end with mesh_finish. */
@@ -38,13 +39,28 @@ typedef enum hierarchy_kind {
     HIERARCHY_KIND_COUNT
 } hierarchy_kind;
 
-/* Why mesh_finish found a mesh not closed: the edge between two vertices is shared by another number of triangles than
- * 2, or, on a one-sided surface, by 2 triangles whose fronts cannot agree. triangle: one of the triangles. */
+/* Why mesh_finish found a mesh not closed. */
+typedef enum mesh_fault {
+    MESH_FLAT,       /* no triangle has three different corners */
+    MESH_ODD,        /* an odd number of triangles share the edge; 1: it is open */
+    MESH_ONE_SIDED,  /* the fronts of the 2 triangles that share the edge cannot agree */
+    MESH_UNBALANCED, /* more than 2 share it, and not as many run along it in either direction */
+    MESH_CANCELLED,  /* all triangles of the part of the mesh lie on others with the same corners and opposite fronts */
+    MESH_FAULT_COUNT
+} mesh_fault;
+
+/* Where: the edge between two vertices of a triangle, which `sharing` triangles share. */
 typedef struct mesh_hole {
     uint32_t from, to;
     size_t triangle;
-    int sharing; /* number of triangles that share the edge */
+    int sharing;
+    mesh_fault fault;
 } mesh_hole;
+
+/* Two triangles of shells that touch: at an edge that both have, one shell lies on or in the other. */
+typedef struct mesh_touch {
+    uint32_t one, other;
+} mesh_touch;
 
 typedef struct mesh {
     size_t vertex_count, triangle_count;
@@ -62,7 +78,8 @@ typedef struct mesh {
     bounds3 bounds;             /* of the vertices that triangles use, or of all without triangles; low > high: none */
     bool closed;                /* closed, with every front facing outwards */
     bool single;                /* every coordinate is exactly a float */
-    size_t shell_count;         /* parts of a closed mesh that share no edge; 0 for one that is not closed */
+    bool crowded;               /* closed, though more than two triangles share some edge */
+    size_t shell_count;         /* mesh_shells of a closed mesh; 0 for one that is not closed */
     mesh_hole hole;             /* for a mesh that is not closed */
     struct mesh_shared *shared; /* number of owners, and the hierarchies and layers built for it */
     uint32_t *numbers;          /* of a layer (hierarchy_layers): its triangles' numbers in the whole mesh; else NULL */
@@ -89,9 +106,14 @@ void mesh_mirror(mesh *m);
  *
  * Triangles with the wrong winding in an otherwise closed mesh are flipped, and so is a closed mesh that is inside out
  * (negative volume). A connected part of which three quarters of the triangles agree keeps their direction, so that a
- * hollow stays a hollow; a more mixed part is made to face outwards. Given normals are not changed. For a one-sided
- * surface the hole is an edge shared by 2 triangles. The message of STATUS_BAD_INPUT names the triangle or vertex.
- * STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
+ * hollow stays a hollow; a more mixed part is made to face outwards. Given normals are not changed.
+ *
+ * Shells of a closed mesh may touch: where more than two triangles share an edge, as many must run along it in either
+ * direction. Two triangles there with the same corners and opposite fronts cancel, as where two boxes are glued; they
+ * stay in the mesh, but in no shell (mesh_shells). A part whose triangles all cancel is refused: m is not closed.
+ *
+ * The message of STATUS_BAD_INPUT names the triangle or vertex. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED:
+ * cancelled. */
 status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);
@@ -109,9 +131,19 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
  * failure. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
 
-/* first[t] is the lowest triangle of t's shell: triangles with a common edge are in one shell. UINT32_MAX: t has two
- * equal corners. For a closed mesh. Ownership and errors as mesh_weld. */
-status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why);
+/* The shells of a closed mesh, which are closed meshes: triangles with a common edge are in one, but where more than
+ * two share the edge, only those that bound a wedge of solid there, one of which opens it and one of which closes it
+ * around the edge. mesh_finish says which triangles cancel; a shell of triangles that all coincide with those of
+ * another one, and face the same way, counts once. After a failure, too, mesh_shells_free releases the list. Errors as
+ * mesh_weld. */
+typedef struct mesh_shell_list {
+    uint32_t *first; /* by triangle: the lowest one of its shell; UINT32_MAX: it is in none */
+    size_t count;    /* of the shells */
+    mesh_touch *touches;
+    size_t touch_count;
+} mesh_shell_list;
+status mesh_shells(const mesh *m, mesh_shell_list *out, diagnostic *why);
+void mesh_shells_free(mesh_shell_list *list);
 
 /* --- closing an open mesh (repair.c) --- */
 

@@ -36,9 +36,76 @@ status mesh_check(const mesh *m, diagnostic *why);
 /* Sets m->closed or m->hole, and flips triangles with the wrong winding. m has passed mesh_check. */
 status mesh_close(mesh *m, diagnostic *why);
 
-/* The half-edge on the other side of each half-edge, and the positions that are one (mesh_weld). Half-edge 3 t + k runs
- * from corner k of triangle t to the next one; UINT32_MAX: its edge is not shared by two triangles, or t has two equal
- * corners. */
+/* --- edges (edges.c) ---
+ *
+ * A half-edge is an edge of one triangle: 3 t + k runs from corner k of triangle t to the next one. Triangles with two
+ * corners at one position have none. */
+
+#define MESH_NO_EDGES "out of memory for the edges of a mesh"
+
+typedef struct half_edge {
+    uint32_t higher, half; /* higher: of the positions of its ends; see edge_lists */
+} half_edge;
+
+/* edges[start[v]] .. edges[start[v + 1] - 1] are the half-edges whose lower position is v, sorted by the higher one and
+ * then by `half`. same: mesh_weld. After a failure, too, edge_lists_free releases them. */
+typedef struct edge_lists {
+    uint32_t *same, *start;
+    half_edge *edges;
+} edge_lists;
+status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why);
+void edge_lists_free(edge_lists *lists);
+
+/* The position where a half-edge begins. */
+static inline uint32_t mesh_half_begins(const mesh *m, const uint32_t *same, uint32_t half)
+{
+    return same[m->triangles[half / 3].corner[half % 3]];
+}
+
+static inline bool mesh_has_distinct_corners(const uint32_t *same, const uint32_t *corner)
+{
+    const uint32_t a = same[corner[0]], b = same[corner[1]], c = same[corner[2]];
+    return a != b && b != c && c != a;
+}
+
+/* The list of the numbers 0 to count - 1, with room for one more. no_memory: the message. */
+status mesh_number_all(size_t count, const char *no_memory, uint32_t **out, diagnostic *why);
+
+/* The first triangle of a connected part, in an array where a triangle points to an earlier one of its part. */
+uint32_t mesh_part_of(uint32_t *parts, uint32_t triangle);
+
+typedef struct edge_findings {
+    size_t odd;     /* the lowest half-edge whose edge an odd number of triangles share; SIZE_MAX: none */
+    int sharing;    /* the number */
+    size_t crowded; /* the lowest half-edge whose edge more than two triangles share; SIZE_MAX: none */
+    size_t edges;   /* edges shared by two */
+    size_t against; /* of these, edges with the same direction in both triangles */
+    size_t joined;  /* of these, edges that joined two parts */
+} edge_findings;
+
+/* Classifies each edge, and pairs the half-edges of those that two triangles share; mates and parts may be NULL. */
+edge_findings edge_lists_pair(const mesh *m, const edge_lists *lists, uint32_t *mates, uint32_t *parts);
+
+/* The pairs of all half-edges of a mesh in which an even number of triangles share each edge, and two neighbours at an
+ * edge of two agree. */
+typedef struct mesh_crowds {
+    uint32_t *parts; /* mesh_part_of: triangles of one shell */
+    uint32_t *twins; /* the first triangle that has this one's corners, and faces the same way; UINT32_MAX: cancelled */
+    mesh_touch *touches;
+    size_t touch_count, touch_room;
+    struct edge_fault {
+        size_t half; /* the lowest half-edge whose edge has the fault; SIZE_MAX: there is none */
+        int sharing;
+        mesh_fault kind;
+    } fault;
+} mesh_crowds;
+status mesh_crowds_make(const mesh *m, const edge_lists *lists, mesh_crowds *out, diagnostic *why);
+void mesh_crowds_free(mesh_crowds *c);
+
+/* --- agreement of neighbours (mesh_topology.c) --- */
+
+/* The half-edge on the other side of each half-edge, and the positions that are one (mesh_weld). UINT32_MAX: its edge
+ * is not shared by two triangles, or its triangle has two equal corners. */
 typedef struct mesh_neighbours {
     uint32_t *same, *mates;
     size_t crowded; /* the lowest half-edge whose edge more than two triangles share; SIZE_MAX: none */

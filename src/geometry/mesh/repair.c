@@ -562,12 +562,30 @@ static status check_volume(const repair *r, const mesh *m, diagnostic *why)
                     "the mesh cannot be closed: the result has a volume of 0");
 }
 
+/* A mesh whose shells touch is closed as it is: *out is a copy then, otherwise NULL. */
+static status keep_crowded(const repair *r, mesh **out, diagnostic *why)
+{
+    mesh *one = NULL;
+    status code = copy_of(r->m, &one, why);
+    THEN(code, mesh_finish(one, why));
+    if (code == STATUS_OK && one->crowded) {
+        *out = one;
+        return STATUS_OK;
+    }
+    mesh_release(one);
+    return code;
+}
+
 /* The steps on the copy. */
 static status make_whole(repair *r, double weld, mesh **out, diagnostic *why)
 {
     size_t against;
     if (weld > 0.0)
         TRY(weld_vertices(r->m, weld, &r->counts->welded, why));
+    if (weld > 0.0 || r->given->crowded)
+        TRY(keep_crowded(r, out, why));
+    if (*out)
+        return STATUS_OK;
     TRY(drop_triangles(r, why));
     TRY(find_neighbours(r, why));
     TRY(check_triangles(r, why));

@@ -201,22 +201,31 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
     const mesh *data = m->data;
     if (!data || data->closed || material_is_opaque(&owner->surface) || s->render.transmission == TRANSMISSION_SIMPLE)
         return STATUS_OK;
-    const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
-    const int sharing = data->hole.sharing;
-    if (sharing >= 2)
+    static const char *const faults[MESH_FAULT_COUNT] = {
+        [MESH_ONE_SIDED] = "turns its other side to the next one",
+        [MESH_ODD] = "meets an even number of others, not 1, 3, 5 ...",
+        [MESH_UNBALANCED] = "meets others that do not agree about which side is the inside",
+        [MESH_CANCELLED] = "lies on one that faces the other way, as all do of this part"};
+    const mesh_hole *hole = &data->hole;
+    if (hole->fault == MESH_FLAT)
+        return diagnose(why, STATUS_BAD_INPUT, "give a mesh with triangles, or make the solid opaque (transparency 0)",
+                        "%.80s is transparent, but its mesh %.80s has no triangle with three different corners",
+                        owner->name, m->name);
+    const vec3 a = data->vertices[hole->from], b = data->vertices[hole->to];
+    if (hole->fault != MESH_ODD || hole->sharing > 1)
         return diagnose(
             why, STATUS_BAD_INPUT,
-            sharing == 2 ? "cut the mesh, or make the solid opaque (transparency 0)"
-                         : "separate the parts, or remove what they share, or make the solid opaque (transparency 0)",
-            "%.80s is transparent, but its mesh %.80s has no inside: at the edge from (%g, %g, %g) to (%g, %g, %g) of "
-            "triangle %zu %s",
-            owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle,
-            sharing == 2 ? "the surface turns its other side" : "more than two triangles meet");
+            hole->fault == MESH_ONE_SIDED
+                ? "cut the mesh, or make the solid opaque (transparency 0)"
+                : "separate the parts, or remove what they share, or make the solid opaque (transparency 0)",
+            "%.80s is transparent, but its mesh %.80s has no inside: at the edge from (%g, %g, %g) to (%g, %g, %g), "
+            "which %d share, triangle %zu %s",
+            owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, hole->sharing, hole->triangle, faults[hole->fault]);
     return diagnose(why, STATUS_BAD_INPUT,
                     "close the mesh (cuvette mesh --close), or make the solid opaque (transparency 0)",
                     "%.80s is transparent, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, "
-                    "%g) of triangle %zu belongs to %d triangles instead of 2",
-                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, sharing);
+                    "%g) of triangle %zu belongs to 1 triangle instead of 2",
+                    owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, hole->triangle);
 }
 
 /* A spectral film needs one spectrum per material: textures and materials by face have none. */

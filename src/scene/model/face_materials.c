@@ -170,7 +170,8 @@ bool ignores_face_transparency(const scene *s, const solid *owner)
 status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
-    if (!m || !m->data || !m->data->closed || m->data->shell_count < 2 || solid_is_opaque(s, owner)) {
+    if (!m || !m->data || !m->data->closed || (m->data->shell_count < 2 && !m->data->crowded) ||
+        solid_is_opaque(s, owner)) {
         *layers = m && m->data ? &m->data : NULL;
         *count = *layers ? 1 : 0;
         return STATUS_OK;
