@@ -174,13 +174,6 @@ status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     return cancel_check(why);
 }
 
-uint32_t mesh_part_of(uint32_t *parts, uint32_t triangle)
-{
-    for (; parts[triangle] != triangle; triangle = parts[triangle])
-        parts[triangle] = parts[parts[triangle]];
-    return triangle;
-}
-
 static bool join_parts(uint32_t *parts, uint32_t one, uint32_t other)
 {
     const uint32_t a = mesh_part_of(parts, one), b = mesh_part_of(parts, other);
@@ -197,14 +190,17 @@ typedef struct edge_range {
 /* The next edge; false after the last one. Begins with zeros. */
 static inline bool next_edge(const mesh *m, const edge_lists *lists, edge_range *e)
 {
-    e->begin = e->end;
-    if (e->begin == lists->start[m->vertex_count])
+    const size_t begin = e->begin = e->end;
+    if (begin == lists->start[m->vertex_count])
         return false;
-    while (lists->start[e->lower + 1] <= e->begin)
+    while (lists->start[e->lower + 1] <= begin)
         e->lower++;
     const size_t list_end = lists->start[e->lower + 1];
-    for (e->end = e->begin + 1; e->end < list_end && lists->edges[e->end].higher == lists->edges[e->begin].higher;)
-        e->end++;
+    const uint32_t higher = lists->edges[begin].higher;
+    size_t end = begin + 1;
+    while (end < list_end && lists->edges[end].higher == higher)
+        end++;
+    e->end = end;
     return true;
 }
 

@@ -72,7 +72,12 @@ static inline bool mesh_has_distinct_corners(const uint32_t *same, const uint32_
 status mesh_number_all(size_t count, const char *no_memory, uint32_t **out, diagnostic *why);
 
 /* The first triangle of a connected part, in an array where a triangle points to an earlier one of its part. */
-uint32_t mesh_part_of(uint32_t *parts, uint32_t triangle);
+static inline uint32_t mesh_part_of(uint32_t *parts, uint32_t triangle)
+{
+    for (; parts[triangle] != triangle; triangle = parts[triangle])
+        parts[triangle] = parts[parts[triangle]];
+    return triangle;
+}
 
 typedef struct edge_findings {
     size_t odd;     /* the lowest half-edge whose edge an odd number of triangles share; SIZE_MAX: none */
