@@ -31,15 +31,13 @@ typedef struct shell_pair {
     uint32_t one, other;
     int winding; /* of the other around a corner of the one */
     bool cross;
-    bool touch; /* at a common edge: mesh_touch */
     vec3 place; /* where they cross */
 } shell_pair;
 
 typedef struct shell_room {
     const mesh *m;
     const hierarchy *tree;
-    mesh_shell_list list;
-    uint32_t *shell_of; /* by triangle, its list's: then the shell's number; UINT32_MAX: it is in none */
+    uint32_t *shell_of; /* by triangle; UINT32_MAX: it is in none */
     shell *shells;      /* shell_count and one more, for the end of the pairs */
     shell_pair *pairs;
     size_t count, pair_count, pair_room;
@@ -68,8 +66,7 @@ static const vec3 *corner_of(const mesh *m, size_t t, int k)
 static status measure_shells(shell_room *r, diagnostic *why)
 {
     const mesh *m = r->m;
-    TRY(mesh_shells(m, &r->list, why));
-    r->shell_of = r->list.first;
+    TRY(mesh_shells(m, &r->shell_of, why));
     r->shells = calloc(m->shell_count + 1, sizeof *r->shells);
     r->order = malloc((m->shell_count + 1) * sizeof *r->order);
     if (!r->shells || !r->order)
@@ -161,15 +158,6 @@ static shell_pair *pair_with(shell_room *r, uint32_t one, uint32_t other)
     const size_t begin = r->shells[one].pairs, count = r->shells[one + 1].pairs - begin;
     const shell_pair wanted = {.one = one, .other = other};
     return count ? bsearch(&wanted, r->pairs + begin, count, sizeof wanted, compare_pairs) : NULL;
-}
-
-static void note_touches(shell_room *r)
-{
-    for (size_t i = 0; i < r->list.touch_count; i++) {
-        const uint32_t one = r->shell_of[r->list.touches[i].one], other = r->shell_of[r->list.touches[i].other];
-        if (one != other && one != UINT32_MAX && other != UINT32_MAX)
-            pair_with(r, one, other)->touch = pair_with(r, other, one)->touch = true;
-    }
 }
 
 /* --- crossings and winding numbers, by rays --- */
@@ -274,7 +262,7 @@ static status find_windings(shell_room *r, diagnostic *why)
             ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, wind, r);
             for (size_t p = begin; p < end; p++) {
                 const int turned = r->shells[r->pairs[p].other].volume6 < 0.0 ? -1 : 1;
-                if (!r->pairs[p].cross && !r->pairs[p].touch && r->pairs[p].winding != 0 &&
+                if (!r->pairs[p].cross && r->pairs[p].winding != 0 &&
                     r->pairs[p].winding != turned)
                     bad = &r->pairs[p];
             }
@@ -330,13 +318,11 @@ static int compare_sizes(const void *one, const void *other)
     return x != y ? (x > y ? -1 : 1) : a < b ? -1 : a > b;
 }
 
-/* The winding number of the layer's shells so far around the shell; *across: one that the shell crosses, or NULL;
- * *apart: whether it crosses or touches one. */
-static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_pair **across, bool *apart)
+/* The winding number of the layer's shells so far around the shell; *across: one that the shell crosses, or NULL. */
+static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_pair **across)
 {
     int sum = 0;
     *across = NULL;
-    *apart = false;
     for (size_t p = r->shells[at].pairs; p < r->shells[at + 1].pairs; p++) {
         const shell *other = &r->shells[r->pairs[p].other];
         if (other->layer != layer)
@@ -344,21 +330,19 @@ static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_p
         sum += other->turned ? -r->pairs[p].winding : r->pairs[p].winding;
         if (r->pairs[p].cross)
             *across = &r->pairs[p];
-        *apart |= r->pairs[p].cross || r->pairs[p].touch;
     }
     return sum;
 }
 
-/* The first layer that has the winding number around the shell, and no shell that it crosses or touches; -1: none.
- * *across: one of those that it crosses. */
+/* The first layer that has the winding number around the shell, and no shell that it crosses; -1: none. *across: one
+ * of those that it crosses. */
 static int layer_with(const shell_room *r, uint32_t at, int winding, const shell_pair **across)
 {
     const shell_pair *found;
     *across = NULL;
     for (int layer = 0; layer < r->layer_count; layer++) {
-        bool apart;
-        const int sum = winding_in(r, at, layer, &found, &apart);
-        if (!apart && sum == winding)
+        const int sum = winding_in(r, at, layer, &found);
+        if (!found && sum == winding)
             return layer;
         *across = found ? found : *across;
     }
@@ -485,7 +469,6 @@ static status divide(shell_room *r, int threads, diagnostic *why)
     status code = hierarchy_build(r->m, HIERARCHY_BVH, threads, &tree, why);
     if (code == STATUS_OK) {
         r->tree = tree;
-        note_touches(r);
         if (r->m->crowded)
             code = check_shells(r, why);
         if (code == STATUS_OK)
@@ -514,7 +497,7 @@ static status make_layers(mesh *m, int threads, diagnostic *why)
     }
     if (code != STATUS_OK)
         mesh_forget_layers(m);
-    mesh_shells_free(&r.list);
+    free(r.shell_of);
     free(r.shells);
     free(r.order);
     free(r.pairs);

@@ -238,7 +238,6 @@ edge_findings edge_lists_pair(const mesh *m, const edge_lists *lists, uint32_t *
  * pair is one in the other. Of triangles with the same corners, two with opposite fronts are inside the solid, and
  * cancel. In one plane solids close before others open, so that two that touch there stay two shells. */
 
-enum { TOUCHES_MAX = 1 << 24 };
 #define IN_ONE_PLANE 0x1p-20 /* radians: positions may be rounded to floats */
 
 typedef struct spoke {
@@ -338,20 +337,8 @@ static void sort_spokes(const mesh *m, uint32_t lower, uint32_t higher, spoke_ro
     qsort(r->spokes, r->count, sizeof *r->spokes, compare_planes);
 }
 
-static status add_touch(mesh_crowds *c, const spoke *one, const spoke *other, diagnostic *why)
-{
-    if (mesh_part_of(c->parts, one->half / 3) == mesh_part_of(c->parts, other->half / 3))
-        return STATUS_OK;
-    if (c->touch_count == TOUCHES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "separate the parts of the mesh", "too many triangles meet at an edge");
-    if (!GROW(c->touches, c->touch_room, c->touch_count + 1))
-        return out_of_memory(why);
-    c->touches[c->touch_count++] = (mesh_touch){one->half / 3, other->half / 3};
-    return STATUS_OK;
-}
-
-/* Joins the triangles of each wedge. A number of spokes before some place are closed first: it begins there. */
-static status match_spokes(spoke_room *r, mesh_crowds *c, diagnostic *why)
+/* Joins the triangles of each wedge. It begins where most spokes are closed that were not open. */
+static void match_spokes(spoke_room *r, mesh_crowds *c)
 {
     size_t start = 0, depth = 0;
     long sum = 0, least = 0;
@@ -362,19 +349,11 @@ static status match_spokes(spoke_room *r, mesh_crowds *c, diagnostic *why)
     }
     for (size_t i = 0; i < r->count; i++) {
         const size_t at = (start + i) % r->count;
-        if (r->spokes[at].opens) {
+        if (r->spokes[at].opens)
             r->open[depth++] = at;
-            continue;
-        }
-        const spoke *opening = &r->spokes[r->open[--depth]];
-        join_parts(c->parts, opening->half / 3, r->spokes[at].half / 3);
-        for (size_t k = 0; k < depth; k++)
-            TRY(add_touch(c, opening, &r->spokes[r->open[k]], why));
+        else
+            join_parts(c->parts, r->spokes[r->open[--depth]].half / 3, r->spokes[at].half / 3);
     }
-    for (size_t i = 0; i < r->count; i++)
-        for (size_t k = i + 1; k < r->count && r->spokes[k].plane == r->spokes[i].plane; k++)
-            TRY(add_touch(c, &r->spokes[i], &r->spokes[k], why));
-    return STATUS_OK;
 }
 
 static status pair_edge(const mesh *m, const edge_lists *lists, const edge_range *e, spoke_room *r, mesh_crowds *c,
@@ -392,7 +371,8 @@ static status pair_edge(const mesh *m, const edge_lists *lists, const edge_range
     }
     if (r->count > 2)
         sort_spokes(m, e->lower, lists->edges[e->begin].higher, r);
-    return r->count > 0 ? match_spokes(r, c, why) : STATUS_OK;
+    match_spokes(r, c);
+    return STATUS_OK;
 }
 
 /* That something is left of each part of the mesh. */
@@ -450,6 +430,5 @@ void mesh_crowds_free(mesh_crowds *c)
 {
     free(c->parts);
     free(c->twins);
-    free(c->touches);
     *c = (mesh_crowds){0};
 }

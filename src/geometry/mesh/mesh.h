@@ -57,11 +57,6 @@ typedef struct mesh_hole {
     mesh_fault fault;
 } mesh_hole;
 
-/* Two triangles of shells that touch: at an edge that both have, one shell lies on or in the other. */
-typedef struct mesh_touch {
-    uint32_t one, other;
-} mesh_touch;
-
 typedef struct mesh {
     size_t vertex_count, triangle_count;
     vec3 *vertices;
@@ -131,19 +126,12 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
  * failure. STATUS_FAILURE: out of memory. STATUS_INTERRUPTED: cancelled. */
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
 
-/* The shells of a closed mesh, which are closed meshes: triangles with a common edge are in one, but where more than
- * two share the edge, only those that bound a wedge of solid there, one of which opens it and one of which closes it
- * around the edge. mesh_finish says which triangles cancel; a shell of triangles that all coincide with those of
- * another one, and face the same way, counts once. After a failure, too, mesh_shells_free releases the list. Errors as
- * mesh_weld. */
-typedef struct mesh_shell_list {
-    uint32_t *first; /* by triangle: the lowest one of its shell; UINT32_MAX: it is in none */
-    size_t count;    /* of the shells */
-    mesh_touch *touches;
-    size_t touch_count;
-} mesh_shell_list;
-status mesh_shells(const mesh *m, mesh_shell_list *out, diagnostic *why);
-void mesh_shells_free(mesh_shell_list *list);
+/* first[t] is the lowest triangle of t's shell. The shells of a closed mesh are closed meshes: triangles with a common
+ * edge are in one, but where more than two share the edge, only those that bound a wedge of solid there, one of which
+ * opens it and one of which closes it around the edge. UINT32_MAX: t is in no shell, since it has two equal corners, or
+ * cancels with another (mesh_finish), or its shell consists of triangles that all coincide with those of another shell
+ * and face the same way, which counts once. Ownership and errors as mesh_weld. */
+status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why);
 
 /* --- closing an open mesh (repair.c) --- */
 

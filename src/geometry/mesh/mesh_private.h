@@ -96,8 +96,6 @@ edge_findings edge_lists_pair(const mesh *m, const edge_lists *lists, uint32_t *
 typedef struct mesh_crowds {
     uint32_t *parts; /* mesh_part_of: triangles of one shell */
     uint32_t *twins; /* the first triangle that has this one's corners, and faces the same way; UINT32_MAX: cancelled */
-    mesh_touch *touches;
-    size_t touch_count, touch_room;
     struct edge_fault {
         size_t half; /* the lowest half-edge whose edge has the fault; SIZE_MAX: there is none */
         int sharing;

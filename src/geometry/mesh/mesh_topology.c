@@ -206,74 +206,72 @@ static status orient_all(mesh *m, const edge_lists *lists, bool *agree, diagnost
     return result;
 }
 
-/* The first triangle of each one's shell, and the number of shells. A shell is left out if all of its triangles have
- * twins, in one other shell. */
-static status list_shells(const mesh *m, const edge_lists *lists, mesh_crowds *c, mesh_shell_list *out, diagnostic *why)
+/* Replaces parts, of triangles of one shell, by the first triangle of each one's shell, and counts these. twins: see
+ * mesh_crowds; or NULL. A shell is left out if all of its triangles have twins, in one other shell. */
+static status list_shells(const mesh *m, const uint32_t *same, uint32_t *parts, const uint32_t *twins, size_t *count,
+                          diagnostic *why)
 {
-    enum { NONE = 0, MIXED = 1, FIRST = 2 }; /* of `copies`, by shell; FIRST + s: the shell of its twins */
-    uint64_t *copies = c->twins ? calloc(m->triangle_count + 1, sizeof *copies) : NULL;
-    if (c->twins && !copies)
+    enum { NONE, MIXED, FIRST }; /* of the twins of a shell, by its first triangle; FIRST + s: all are in shell s */
+    uint64_t *shells = twins ? calloc(m->triangle_count + 1, sizeof *shells) : NULL;
+    if (twins && !shells)
         return out_of_memory(why);
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const bool none =
-            (c->twins && c->twins[t] == UINT32_MAX) || !mesh_has_distinct_corners(lists->same, m->triangles[t].corner);
-        out->first[t] = none ? UINT32_MAX : mesh_part_of(c->parts, (uint32_t)t);
-        if (none || !copies)
+    for (size_t t = 0; t < m->triangle_count; t++)
+        parts[t] = mesh_part_of(parts, (uint32_t)t);
+    for (size_t t = 0; shells && t < m->triangle_count; t++) {
+        if (twins[t] == UINT32_MAX)
             continue;
-        const uint32_t other = mesh_part_of(c->parts, c->twins[t]);
-        uint64_t *copy = &copies[out->first[t]];
-        *copy = other == out->first[t] || (*copy != NONE && *copy != FIRST + (uint64_t)other) ? MIXED : FIRST + other;
+        const uint32_t shell = parts[t], other = parts[twins[t]];
+        const uint64_t found = shells[shell];
+        shells[shell] = other == shell || (found != NONE && found != FIRST + (uint64_t)other) ? MIXED : FIRST + other;
     }
     for (size_t t = 0; t < m->triangle_count; t++) {
-        if (copies && out->first[t] != UINT32_MAX && copies[out->first[t]] >= FIRST)
-            out->first[t] = UINT32_MAX;
-        out->count += out->first[t] == t;
+        const uint32_t shell = parts[t];
+        const bool none = !mesh_has_distinct_corners(same, m->triangles[t].corner) ||
+                          (twins && (twins[t] == UINT32_MAX || shells[shell] >= FIRST));
+        *count += !none && shell == t;
+        parts[t] = none ? UINT32_MAX : shell;
     }
-    free(copies);
+    free(shells);
     return STATUS_OK;
 }
 
-static status find_shells(const mesh *m, const edge_lists *lists, mesh_shell_list *out, struct edge_fault *fault,
-                          diagnostic *why)
+/* *first and *count are set unless there is a fault. */
+static status find_crowded_shells(const mesh *m, const edge_lists *lists, uint32_t **first, size_t *count,
+                                  struct edge_fault *fault, diagnostic *why)
 {
     mesh_crowds crowds;
-    TRY(mesh_number_all(m->triangle_count, MESH_NO_EDGES, &out->first, why));
     status result = mesh_crowds_make(m, lists, &crowds, why);
-    THEN(result, list_shells(m, lists, &crowds, out, why));
     *fault = crowds.fault;
-    out->touches = crowds.touches;
-    out->touch_count = crowds.touch_count;
-    crowds.touches = NULL;
+    if (result == STATUS_OK && fault->half == SIZE_MAX)
+        result = list_shells(m, lists->same, crowds.parts, crowds.twins, count, why);
+    *first = crowds.parts;
+    crowds.parts = NULL;
     mesh_crowds_free(&crowds);
     return result;
 }
 
-void mesh_shells_free(mesh_shell_list *list)
-{
-    free(list->first);
-    free(list->touches);
-    *list = (mesh_shell_list){0};
-}
-
-status mesh_shells(const mesh *m, mesh_shell_list *out, diagnostic *why)
+status mesh_shells(const mesh *m, uint32_t **first, diagnostic *why)
 {
     edge_lists lists = {0};
     struct edge_fault fault;
-    *out = (mesh_shell_list){0};
+    size_t count = 0;
+    *first = NULL;
     status result = edge_lists_make(m, &lists, why);
     if (m->crowded) {
-        THEN(result, find_shells(m, &lists, out, &fault, why));
+        THEN(result, find_crowded_shells(m, &lists, first, &count, &fault, why));
     } else {
-        mesh_crowds plain = {0};
-        THEN(result, mesh_number_all(m->triangle_count, MESH_NO_EDGES, &out->first, why));
-        plain.parts = out->first; /* each triangle is a part */
+        THEN(result, mesh_number_all(m->triangle_count, MESH_NO_EDGES, first, why)); /* each triangle is a part */
         if (result == STATUS_OK) {
-            edge_lists_pair(m, &lists, NULL, plain.parts);
+            edge_lists_pair(m, &lists, NULL, *first);
             result = cancel_check(why);
         }
-        THEN(result, list_shells(m, &lists, &plain, out, why));
+        THEN(result, list_shells(m, lists.same, *first, NULL, &count, why));
     }
     edge_lists_free(&lists);
+    if (result != STATUS_OK) {
+        free(*first);
+        *first = NULL;
+    }
     return result;
 }
 
@@ -283,33 +281,32 @@ static void flip_all(mesh *m)
         flip(m, t);
 }
 
-/* Finds the shells of a mesh in which an even number of triangles share each edge, and neighbours at an edge of two
+/* Counts the shells of a mesh in which an even number of triangles share each edge, and neighbours at an edge of two
  * agree. */
-static status count_shells(mesh *m, mesh_shell_list *list, diagnostic *why)
+static status count_shells(mesh *m, diagnostic *why)
 {
     edge_lists lists = {0};
     struct edge_fault fault = {.half = SIZE_MAX};
-    *list = (mesh_shell_list){0};
+    uint32_t *first = NULL;
+    m->shell_count = 0;
     status result = edge_lists_make(m, &lists, why);
-    THEN(result, find_shells(m, &lists, list, &fault, why));
+    THEN(result, find_crowded_shells(m, &lists, &first, &m->shell_count, &fault, why));
     edge_lists_free(&lists);
+    free(first);
     m->closed = m->crowded = result == STATUS_OK && fault.half == SIZE_MAX;
-    m->shell_count = m->closed ? list->count : 0;
     if (result == STATUS_OK && !m->closed)
         record_hole(m, fault.half, fault.sharing, fault.kind);
-    mesh_shells_free(list);
     return result;
 }
 
 /* Shells depend on which side is the inside, so that they are found again in a mesh that was inside out. */
 static status close_crowded(mesh *m, diagnostic *why)
 {
-    mesh_shell_list list;
-    TRY(count_shells(m, &list, why));
+    TRY(count_shells(m, why));
     if (!m->closed || !(mesh_volume(m) < 0.0))
         return STATUS_OK;
     flip_all(m);
-    return count_shells(m, &list, why);
+    return count_shells(m, why);
 }
 
 status mesh_close(mesh *m, diagnostic *why)

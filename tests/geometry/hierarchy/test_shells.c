@@ -297,7 +297,7 @@ static void a_shell_in_one_that_winds_twice_is_refused(void **state)
 
 /* --- shells that touch --- */
 
-static const vec3 turned = {17, 40, 9};
+static vec3 turned = {17, 40, 9}; /* degrees, of all that follows */
 
 typedef struct cell_faces {
     mesh *m; /* NULL while triangles are counted */
@@ -446,6 +446,31 @@ static void shells_that_touch_are_their_union(void **state)
     touch_is_union(corner, 3, 1, 1);
 }
 
+/* Layers only, for more places of corners and edges next to faces than can be rendered. */
+static void touching_faces_are_found_however_turned(void **state)
+{
+    (void)state;
+    static const box pairs[][2] = {{BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 2)},
+                                   {BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 4)},
+                                   {BOX(0, 0, 0, 2, 2, 6), BOX(2, 0, 0, 2, 6, 2)},
+                                   {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 2, 2)},
+                                   {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 4, 4)},
+                                   {BOX(0, 0, 0, 4, 4, 4), BOX(0, 0, 0, 4, 4, 2)},
+                                   {BOX(0, 0, 0, 2, 6, 2), BOX(2, 2, 0, 2, 6, 2)}};
+    uint64_t seed = 4;
+    const vec3 before = turned;
+    for (int round = 0; round < 200; round++) {
+        turned = round == 0 ? vec3_make(0, 0, 0) : random_point(&seed, 180.0);
+        for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+            for (int cells = 0; cells < 2; cells++) {
+                mesh *m = mesh_of_cells(pairs[i], 2, 0, cells);
+                assert_int_equal(layers_of(m, NULL), m->shell_count);
+                mesh_release(m);
+            }
+    }
+    turned = before;
+}
+
 static void doubled_shells_count_once(void **state)
 {
     (void)state;
@@ -589,6 +614,7 @@ int main(void)
         cmocka_unit_test(a_shell_in_one_that_winds_twice_is_refused),
         cmocka_unit_test(glued_boxes_are_one_box),
         cmocka_unit_test(shells_that_touch_are_their_union),
+        cmocka_unit_test(touching_faces_are_found_however_turned),
         cmocka_unit_test(doubled_shells_count_once),
         cmocka_unit_test(random_boxes_of_a_grid_are_their_union),
         cmocka_unit_test(a_cavity_at_a_face_is_a_notch),
