@@ -539,6 +539,9 @@ done | sort -u | wc -l >films
 check "a scene reads GLB, PLY and PLY.gz alike" is "$(cat films)" 1
 run mesh torus.obj.gz -o again.obj
 check "mesh reads a compressed OBJ" is "$code $(triangles again.obj)" "0 $(triangles torus.obj)"
+{ head -c 100 torus.obj | gzip && tail -c +101 torus.obj | head -c -1 | gzip; } >members.OBJ.GZ
+run mesh members.OBJ.GZ -o again.obj
+check "mesh reads two members, to the last byte" is "$code $(triangles again.obj)" "0 $(triangles torus.obj)"
 head -c 200 torus.obj.gz >cut.obj.gz
 run mesh cut.obj.gz
 check "mesh refuses a compressed file that is cut short, by its name" is "$code $(cat err)" \

@@ -88,8 +88,9 @@ static void a_soup_is_welded(void **state)
 static void the_first_vertex_within_the_distance_is_taken(void **state)
 {
     (void)state;
-    mesh *ball = sphere_of(1), *soup = finished(soup_of(ball, 0.02, 4));
-    const double weld = 0.06;
+    mesh *ball = sphere_of(1), *soup = finished(soup_of(ball, 0.05, 4));
+    const double weld = 0.08;
+    int choices = 0; /* vertices with two that were kept within the distance */
     vec3 *expected = calloc(soup->vertex_count, sizeof *expected);
     bool *kept = calloc(soup->vertex_count, sizeof *kept);
     for (size_t v = 0; v < soup->vertex_count; v++) {
@@ -98,11 +99,15 @@ static void the_first_vertex_within_the_distance_is_taken(void **state)
             at++;
         kept[v] = at == v;
         expected[v] = soup->vertices[at];
+        for (at++; at < v; at++)
+            choices += kept[at] && vec3_length(vec3_sub(soup->vertices[at], soup->vertices[v])) <= weld;
     }
+    assert_true(choices > 10);
     mesh_repairs r;
     mesh *m = NULL;
     assert_int_equal(mesh_repair(soup, weld, &r, &m, NULL), STATUS_OK);
-    for (size_t t = 0; t < m->triangle_count; t++) /* none was dropped */
+    assert_int_equal(r.degenerate + r.duplicate + r.turned, 0);
+    for (size_t t = 0; t < soup->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const vec3 p = m->vertices[m->triangles[t].corner[k]], q = expected[3 * t + (size_t)k];
             assert_true(p.x == q.x && p.y == q.y && p.z == q.z);
@@ -278,6 +283,90 @@ static void two_divisions_by_one_diagonal_are_made_different(void **state)
     }
 }
 
+/* Two holes whose least areas have one diagonal: the other one is an edge of each: the second hole
+ * is filled around its middle. */
+static void a_diagonal_is_used_once(void **state)
+{
+    (void)state;
+    static const vec3 corners[] = {{0.4, 0.4, 0}, {1, 0, 1}, {0.6, 0.6, 0}, {0, 1, 1}, {1, 0, -1}, {0, 1, -1.5}};
+    static const mesh_triangle list[] = {{{1, 0, 4}}, {{2, 1, 4}}, {{0, 3, 5}}, {{3, 2, 5}}};
+    mesh_repairs r;
+    mesh *m = repaired(finished(mesh_of(corners, 6, list, 4)), 0.0, &r);
+    assert_int_equal(r.holes, 2);
+    assert_int_equal(m->triangle_count, 4 + 2 + 4);
+    assert_false(m->crowded);
+    free(r.fills);
+    mesh_release(m);
+}
+
+/* What vertices and triangles have stays; a filled hole has the material of a neighbour. */
+static void attributes_are_kept(void **state)
+{
+    (void)state;
+    uint64_t seed = 9;
+    mesh *m = NULL, *c = cubes(1);
+    assert_int_equal(mesh_create(8, 11, true, true, true, &m, NULL), STATUS_OK);
+    memcpy(m->vertices, c->vertices, 8 * sizeof *m->vertices);
+    memcpy(m->triangles, c->triangles, 11 * sizeof *m->triangles); /* without half of the face x = 1 */
+    mesh_release(c);
+    m->slot_count = 9;
+    assert_non_null(m->slot_names[3] = strdup("glass"));
+    for (size_t v = 0; v < 8; v++) {
+        m->normals[v] = random_point(&seed, 1.0);
+        m->uvs[v] = (mesh_uv){random_real(&seed, 0.0, 1.0), (double)v};
+    }
+    for (size_t t = 0; t < 11; t++)
+        m->slots[t] = (uint8_t)(1 + random_below(&seed, 8));
+    finished(m);
+    mesh_retain(m);
+    mesh_repairs r;
+    mesh *out = repaired(m, 0.0, &r);
+    assert_int_equal(out->slot_count, 9);
+    assert_string_equal(out->slot_names[3], "glass");
+    assert_int_equal(out->triangle_count, 12);
+    assert_true(r.fills[0].span == 2.0); /* along y and z */
+    for (size_t t = 0; t < 11; t++) {
+        assert_int_equal(out->slots[t], m->slots[t]);
+        for (int k = 0; k < 3; k++) {
+            const uint32_t v = out->triangles[t].corner[k], w = m->triangles[t].corner[k];
+            assert_memory_equal(&out->vertices[v], &m->vertices[w], sizeof(vec3));
+            assert_true(vec3_length(vec3_sub(out->normals[v], m->normals[w])) < 1e-15);
+            assert_memory_equal(&out->uvs[v], &m->uvs[w], sizeof(mesh_uv));
+        }
+    }
+    bool beside = false;
+    for (size_t t = 0; t < 11; t++) /* two corners on the filled triangle */
+        for (int i = 0, common = 0; i < 9; i++) {
+            common += m->triangles[t].corner[i / 3] == (uint32_t[]){1, 5, 7}[i % 3];
+            beside |= i == 8 && common == 2 && m->slots[t] == out->slots[11];
+        }
+    assert_true(beside);
+    for (int k = 0; k < 3; k++) {
+        const uint32_t v = out->triangles[11].corner[k];
+        assert_true(out->normals[v].x == 1.0);
+        assert_true(out->uvs[v].v == 1.0 || out->uvs[v].v == 5.0 || out->uvs[v].v == 7.0);
+    }
+    free(r.fills);
+    mesh_release(out);
+    mesh_release(m);
+}
+
+/* A sphere that is inside out. */
+static void all_that_is_turned_is_counted(void **state)
+{
+    (void)state;
+    mesh *m = sphere_of(2);
+    without(m, 7);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        turn_triangle(m, t);
+    mesh_repairs r;
+    m = repaired(finished(m), 0.0, &r);
+    assert_int_equal(r.turned, 319);
+    assert_true(mesh_volume(m) > 4.0);
+    free(r.fills);
+    mesh_release(m);
+}
+
 /* Random spheres with random triangles missing. */
 static void random_holes_are_filled(void **state)
 {
@@ -401,6 +490,9 @@ int main(void)
         cmocka_unit_test(a_large_hole_is_filled_around_its_middle),
         cmocka_unit_test(holes_that_meet_are_filled),
         cmocka_unit_test(two_divisions_by_one_diagonal_are_made_different),
+        cmocka_unit_test(a_diagonal_is_used_once),
+        cmocka_unit_test(attributes_are_kept),
+        cmocka_unit_test(all_that_is_turned_is_counted),
         cmocka_unit_test(random_holes_are_filled),
         cmocka_unit_test(crowded_edges_are_refused),
         cmocka_unit_test(shells_that_touch_after_welding_are_closed),
