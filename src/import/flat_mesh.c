@@ -20,19 +20,25 @@ status no_memory_for(const request *req, diagnostic *why)
 
 /* --- vertices --- */
 
-enum { NUMBERS = 8 };
+/* How many numbers of a vertex can differ from 0. */
+static int numbers_used(const flat_mesh *flat)
+{
+    return flat->with_colors ? JOIN_NUMBERS : flat->with_normals || flat->with_uvs ? JOIN_COLOR : 3;
+}
 
-static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers[NUMBERS])
+static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers[JOIN_NUMBERS])
 {
     vec3 p = flat->positions[index];
     vec3 n = flat->with_normals ? flat->normals[index] : vec3_make(0, 0, 0);
     double u = flat->with_uvs ? flat->uvs[index].u : 0, v = flat->with_uvs ? flat->uvs[index].v : 0;
-    memcpy(numbers, (double[NUMBERS]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, NUMBERS * sizeof *numbers);
+    memcpy(numbers, (double[JOIN_COLOR]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, JOIN_COLOR * sizeof *numbers);
+    for (int c = 0; flat->with_colors && c < 3; c++)
+        numbers[JOIN_COLOR + c] = (double)flat->colors[index][c];
 }
 
-uint64_t join_hash(const flat_mesh *flat, const double numbers[NUMBERS])
+uint64_t join_hash(const flat_mesh *flat, const double numbers[JOIN_NUMBERS])
 {
-    const int used = flat->with_normals || flat->with_uvs ? NUMBERS : 3;
+    const int used = numbers_used(flat);
     uint64_t hash = 0x9e3779b97f4a7c15u;
     for (int i = 0; i < used; i++) {
         uint64_t bits;
@@ -43,6 +49,15 @@ uint64_t join_hash(const flat_mesh *flat, const double numbers[NUMBERS])
     return hash;
 }
 
+void join_color(flat_mesh *flat, const double color[3], double numbers[JOIN_NUMBERS])
+{
+    for (int c = 0; c < 3; c++) {
+        if (color[c] > 1 || color[c] < 0)
+            flat_note(flat, "colours of vertices that are not within 0 to 1 are taken as the nearest that is");
+        numbers[JOIN_COLOR + c] = color[c] > 0 ? (double)(float)(color[c] < 1 ? color[c] : 1) : 0;
+    }
+}
+
 void join_prefetch(const joiner *j, uint64_t hash)
 {
     if (j->size)
@@ -50,13 +65,14 @@ void join_prefetch(const joiner *j, uint64_t hash)
 }
 
 /* The table index of the vertex with these numbers, or of the empty entry for it. Entries are index + 1; 0 is empty. */
-static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[NUMBERS], uint64_t hash)
+static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[JOIN_NUMBERS], uint64_t hash)
 {
+    const size_t bytes = (size_t)numbers_used(flat) * sizeof *numbers;
     size_t at = hash & (j->size - 1);
     while (j->table[at]) {
-        double other[NUMBERS];
+        double other[JOIN_NUMBERS];
         vertex_numbers(flat, j->table[at] - 1, other);
-        if (memcmp(other, numbers, sizeof other) == 0)
+        if (memcmp(other, numbers, bytes) == 0)
             break;
         at = (at + 1) & (j->size - 1);
     }
@@ -70,7 +86,7 @@ static bool resize_table(joiner *j, const flat_mesh *flat, size_t size)
     if (!larger.table)
         return false;
     for (size_t i = 0; i < flat->vertex_count; i++) {
-        double numbers[NUMBERS];
+        double numbers[JOIN_NUMBERS];
         vertex_numbers(flat, (uint32_t)i, numbers);
         larger.table[find(&larger, flat, numbers, join_hash(flat, numbers))] = (uint32_t)i + 1;
     }
@@ -92,7 +108,9 @@ static bool resize_arrays(joiner *j, flat_mesh *flat, size_t room)
     flat->normals = normals ? normals : flat->normals;
     void *uvs = flat->with_uvs ? resized(flat->uvs, room, sizeof *flat->uvs) : NULL;
     flat->uvs = uvs ? uvs : flat->uvs;
-    if (!positions || (flat->with_normals && !normals) || (flat->with_uvs && !uvs))
+    void *colors = flat->with_colors ? resized(flat->colors, room, sizeof *flat->colors) : NULL;
+    flat->colors = colors ? colors : flat->colors;
+    if (!positions || (flat->with_normals && !normals) || (flat->with_uvs && !uvs) || (flat->with_colors && !colors))
         return false;
     j->room = room;
     return true;
@@ -108,7 +126,7 @@ bool join_reserve(joiner *j, flat_mesh *flat, size_t count)
     return resize_table(j, flat, size) && resize_arrays(j, flat, count);
 }
 
-status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[NUMBERS], uint64_t hash,
+status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[JOIN_NUMBERS], uint64_t hash,
                    uint32_t *index, diagnostic *why)
 {
     if (flat->vertex_count * 2 >= j->size && !resize_table(j, flat, j->size ? j->size * 2 : 1024))
@@ -132,15 +150,17 @@ status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double 
         flat->uvs[*index].u = numbers[6];
         flat->uvs[*index].v = numbers[7];
     }
+    for (int c = 0; flat->with_colors && c < 3; c++)
+        flat->colors[*index][c] = (float)numbers[JOIN_COLOR + c];
     return STATUS_OK;
 }
 
-status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[NUMBERS], size_t count,
+status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[JOIN_NUMBERS], size_t count,
                      uint32_t *indices, diagnostic *why)
 {
     uint64_t hashes[JOIN_BLOCK];
     for (size_t i = 0; i < count; i++) {
-        for (int k = 0; k < NUMBERS; k++)
+        for (int k = 0; k < JOIN_COLOR; k++)
             numbers[i][k] += 0.0; /* -0 becomes 0 */
         hashes[i] = join_hash(flat, numbers[i]);
         join_prefetch(j, hashes[i]);
@@ -170,7 +190,8 @@ static char *name_copy(const char *name)
 
 void flat_release(flat_mesh *flat)
 {
-    free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->triangles), free(flat->slots);
+    free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->colors);
+    free(flat->triangles), free(flat->slots);
     for (unsigned i = 0; i < flat->material_count; i++)
         free(flat->materials[i].name), free(flat->materials[i].texture);
     for (unsigned i = 0; i < flat->image_count; i++)
@@ -300,7 +321,8 @@ status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
         .version = MESH_WIRE_VERSION,
         .vertex_count = flat->vertex_count,
         .triangle_count = flat->triangle_count,
-        .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u),
+        .flags = (flat->with_normals ? MESH_WIRE_NORMALS : 0u) | (flat->with_uvs ? MESH_WIRE_UVS : 0u) |
+                 (flat->with_colors ? MESH_WIRE_COLORS | (flat->srgb ? MESH_WIRE_SRGB : 0u) : 0u),
         .material_count = flat->material_count,
         .note_length = (uint32_t)text_length(flat->note),
         .image_count = flat->image_count,
@@ -312,6 +334,8 @@ status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why)
         fwrite(flat->normals, sizeof *flat->normals, flat->vertex_count, to);
     if (flat->with_uvs)
         fwrite(flat->uvs, sizeof *flat->uvs, flat->vertex_count, to);
+    if (flat->with_colors)
+        fwrite(flat->colors, sizeof *flat->colors, flat->vertex_count, to);
     fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
     fwrite(flat->slots, 1, flat->triangle_count, to);
     write_materials(flat, to);

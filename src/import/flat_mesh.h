@@ -58,16 +58,19 @@ typedef struct mesh_view {
     char *name;
 } mesh_view;
 
-/* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
+/* One mesh in world coordinates. Vertices that are equal in position, normal, texture coordinates and colour are
+ * joined. */
 typedef struct flat_mesh {
     size_t vertex_count, triangle_count;
     vec3 *positions, *normals;
     struct {
         double u, v;
     } * uvs;
+    float (*colors)[3]; /* 0 to 1 */
     uint32_t (*triangles)[3];
     uint8_t *slots; /* by triangle: index of its material */
-    bool with_normals, with_uvs;
+    bool with_normals, with_uvs, with_colors;
+    bool srgb; /* colours are sRGB, as in OBJ and PLY files; otherwise linear */
     unsigned material_count;
     mesh_material materials[MESH_WIRE_SLOTS_MAX];
     unsigned image_count, view_count;
@@ -88,6 +91,7 @@ void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *nu
 /* Adds a camera or a light, unless there are too many; the name is copied, NULL: none. */
 status flat_view(const request *req, flat_mesh *flat, const mesh_wire_view *values, const char *name, diagnostic *why);
 #define FLAT_FEW_CORNERS "faces with fewer than three corners are left out"
+#define VERTEX_ALPHA_NOTE "the alpha of vertices is ignored"
 /* Adds a sentence to the note, unless it is there already. */
 void flat_note(flat_mesh *flat, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Writes the wire format (mesh_wire.h). STATUS_FAILURE if `to` cannot be written. */
@@ -95,10 +99,11 @@ status flat_write(const flat_mesh *flat, FILE *to, diagnostic *why);
 
 /* --- joining vertices --- */
 
-enum { JOIN_BLOCK = 64 };
+enum { JOIN_BLOCK = 64, JOIN_NUMBERS = 11, JOIN_COLOR = 8 };
 
-/* A hash table of the vertices of a flat_mesh. The key is the bits of 8 numbers: position, normal and texture
- * coordinates. Missing ones are 0, and none may be -0. The owner frees the table. */
+/* A hash table of the vertices of a flat_mesh. The key is the bits of JOIN_NUMBERS numbers: position, normal, texture
+ * coordinates, and from JOIN_COLOR on the colour, of join_color. Missing ones are 0, and none may be -0. The owner
+ * frees the table. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;
@@ -107,12 +112,14 @@ typedef struct joiner {
 
 /* Makes room for `count` vertices; false: out of memory. */
 bool join_reserve(joiner *j, flat_mesh *flat, size_t count);
-uint64_t join_hash(const flat_mesh *flat, const double numbers[8]);
+uint64_t join_hash(const flat_mesh *flat, const double numbers[JOIN_NUMBERS]);
+/* Sets the colour of a vertex: as floats, within 0 to 1, with a note if it is not. */
+void join_color(flat_mesh *flat, const double color[3], double numbers[JOIN_NUMBERS]);
 /* Starts to load what join_vertex will read: tables of large meshes exceed the caches. */
 void join_prefetch(const joiner *j, uint64_t hash);
 /* Finds the vertex with these numbers, or adds it. */
-status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[8], uint64_t hash,
+status join_vertex(const request *req, joiner *j, flat_mesh *flat, const double numbers[JOIN_NUMBERS], uint64_t hash,
                    uint32_t *index, diagnostic *why);
 /* The same for up to JOIN_BLOCK vertices, whose -0 become 0. */
-status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[8], size_t count,
+status join_vertices(const request *req, joiner *j, flat_mesh *flat, double (*numbers)[JOIN_NUMBERS], size_t count,
                      uint32_t *indices, diagnostic *why);

@@ -18,12 +18,13 @@ typedef struct primitive {
     gltf_item mesh;
     const json_t *attributes;
     int64_t material;
-    gltf_accessor positions, normals, uvs, indices; /* count 0: none */
+    gltf_accessor positions, normals, uvs, colors, indices; /* count 0: none */
     uint64_t mode, corners, triangles;
     gltf_uv_map map;
 } primitive;
 
-/* A material that triangles use, and the colour of all their vertices (COLOR_0), which multiplies its own. */
+/* A material that triangles use, and the colour of all their vertices (COLOR_0), which multiplies its own. Where
+ * vertices of a material differ, all have colours of their own instead. */
 typedef struct tinted {
     bool used;
     double tint[3];
@@ -186,6 +187,7 @@ static status open_primitive(gltf_file *g, gltf_item mesh, const json_t *json, p
     snprintf(set, sizeof set, "TEXCOORD_%llu", (unsigned long long)p->map.set);
     TRY(open_attribute(g, p, attributes, "NORMAL", 3, &p->normals));
     TRY(open_attribute(g, p, attributes, set, 2, &p->uvs));
+    TRY(open_attribute(g, p, attributes, "COLOR_0", 0, &p->colors));
     TRY(open_indices(g, json, p));
     note_rest(g, json);
     p->corners = p->indices.count ? p->indices.count : p->positions.count;
@@ -262,24 +264,21 @@ static status visit_all(walk *w, const uint32_t *parent_plus_1, status (*visit)(
 
 /* --- the first traversal: counts triangles, finds materials and attributes --- */
 
-/* The colour of all vertices of a primitive; false: they differ, which a mesh cannot have here. */
-static status find_tint(gltf_file *g, const primitive *p, double tint[3], bool *one)
+/* Finds the colour of all vertices of a primitive, which keeps its value if they have none; false: they differ. */
+static bool find_tint(gltf_file *g, const primitive *p, double tint[3])
 {
-    gltf_accessor colors;
     double color[4] = {0, 0, 0, 1};
-    bool clear = false;
-    *one = true;
-    TRY(open_attribute(g, p, p->attributes, "COLOR_0", 0, &colors));
-    for (size_t i = 0; colors.count && (*one || !clear) && i < p->positions.count; i++) {
-        gltf_accessor_get(&colors, i, color);
+    bool clear = false, one = true;
+    for (size_t i = 0; p->colors.count && (one || !clear) && i < p->positions.count; i++) {
+        gltf_accessor_get(&p->colors, i, color);
         if (i == 0)
             memcpy(tint, color, 3 * sizeof *tint);
-        *one &= memcmp(tint, color, 3 * sizeof *tint) == 0;
+        one &= memcmp(tint, color, 3 * sizeof *tint) == 0;
         clear |= color[3] < 1;
     }
     if (clear)
-        flat_note(g->flat, "the alpha of vertices is ignored");
-    return STATUS_OK;
+        flat_note(g->flat, VERTEX_ALPHA_NOTE);
+    return one;
 }
 
 /* The number of a primitive's look, of two for each material and for none: the second is without the texture, for
@@ -300,19 +299,15 @@ static status count_primitive(walk *w, const primitive *p, size_t node)
     (void)node;
     gltf_file *g = w->g;
     double tint[3] = {1, 1, 1};
-    bool one;
     w->triangles += p->triangles;
     w->vertices += p->positions.count;
     g->flat->with_normals |= p->normals.count > 0;
     g->flat->with_uvs |= p->uvs.count > 0;
-    TRY(find_tint(g, p, tint, &one));
+    const bool one = find_tint(g, p, tint);
     if (p->map.textured && !p->uvs.count)
         flat_note(g->flat, "a texture whose coordinates the mesh lacks is left out");
     tinted *m = &w->used[look_of(g, p)];
-    if (!one || (m->used && memcmp(tint, m->tint, sizeof tint) != 0)) {
-        memcpy(tint, (double[3]){1, 1, 1}, sizeof tint);
-        flat_note(g->flat, "colours of vertices are ignored where they differ within a material");
-    }
+    g->flat->with_colors |= !one || (m->used && memcmp(tint, m->tint, sizeof tint) != 0);
     m->used = true;
     memcpy(m->tint, tint, sizeof tint);
     return STATUS_OK;
@@ -320,14 +315,15 @@ static status count_primitive(walk *w, const primitive *p, size_t node)
 
 static status number_slots(walk *w)
 {
+    static const double white[3] = {1, 1, 1};
     const size_t count = look_count(w->g);
     w->slot_of = calloc(count, 1);
     if (!w->slot_of)
         return no_memory_for(w->g->req, w->g->why);
     for (size_t i = 0; i < count; i++)
         if (w->used[i].used)
-            TRY(gltf_material_slot(w->g, i + 2 < count ? (int64_t)(i / 2) : -1, w->used[i].tint, i % 2 == 0,
-                                   &w->slot_of[i]));
+            TRY(gltf_material_slot(w->g, i + 2 < count ? (int64_t)(i / 2) : -1,
+                                   w->g->flat->with_colors ? white : w->used[i].tint, i % 2 == 0, &w->slot_of[i]));
     return STATUS_OK;
 }
 
@@ -462,13 +458,13 @@ static bool blend(const placement *at, size_t vertex, gltf_affine *out)
 }
 
 /* v of the file increases downwards, 3.8.3; here it increases upwards. */
-static void vertex_numbers(const placement *at, size_t i, double numbers[8])
+static void vertex_numbers(flat_mesh *flat, const placement *at, size_t i, double numbers[JOIN_NUMBERS])
 {
     const primitive *p = at->of;
     gltf_affine points = at->points, normals = at->normals;
     bool identity = at->identity;
-    double v[3], determinant;
-    memset(numbers, 0, 8 * sizeof *numbers);
+    double v[3], determinant, color[4] = {1, 1, 1, 1};
+    memset(numbers, 0, JOIN_NUMBERS * sizeof *numbers);
     if (at->joints) {
         identity = !blend(at, i, &points);
         normals = normal_transform(&points, &determinant);
@@ -491,6 +487,10 @@ static void vertex_numbers(const placement *at, size_t i, double numbers[8])
         numbers[6] = m[0] * v[0] + m[1] * v[1] + m[2];
         numbers[7] = 1 - (m[3] * v[0] + m[4] * v[1] + m[5]);
     }
+    if (p->colors.count)
+        gltf_accessor_get(&p->colors, i, color);
+    if (flat->with_colors)
+        join_color(flat, color, numbers);
 }
 
 /* The corners of a triangle, 3.7.2.1. */
@@ -512,7 +512,7 @@ static status triangle_corners(const gltf_file *g, const primitive *p, uint64_t 
 enum { UNUSED = 0, USED = 1 };
 static status join_used(walk *w, const primitive *p, const placement *at, uint32_t *index)
 {
-    double numbers[JOIN_BLOCK][8];
+    double numbers[JOIN_BLOCK][JOIN_NUMBERS];
     uint32_t joined[JOIN_BLOCK], corners[3];
     size_t from[JOIN_BLOCK], count = 0;
     for (uint64_t t = 0; t < p->triangles; t++) {
@@ -522,7 +522,7 @@ static status join_used(walk *w, const primitive *p, const placement *at, uint32
     }
     for (size_t i = 0; i < p->positions.count; i++) {
         if (index[i] == USED) {
-            vertex_numbers(at, i, numbers[count]);
+            vertex_numbers(w->g->flat, at, i, numbers[count]);
             from[count++] = i;
         }
         if (count < JOIN_BLOCK && i + 1 < p->positions.count)

@@ -4,10 +4,11 @@
  * order:
  *
  * - the header;
- * - positions: vertex_count x 3 doubles; no two vertices are equal in position, normal and texture coordinates. The
- *   reader relies on this: edges between equal vertices would count as open;
+ * - positions: vertex_count x 3 doubles; no two vertices are equal in position, normal, texture coordinates and colour.
+ *   The reader relies on this: edges between equal vertices would count as open;
  * - normals, if MESH_WIRE_NORMALS is set: vertex_count x 3 doubles; they need not be unit vectors;
  * - uvs, if MESH_WIRE_UVS is set: vertex_count x 2 doubles;
+ * - colours, if MESH_WIRE_COLORS is set: vertex_count x 3 floats from 0 to 1, linear RGB, or sRGB with MESH_WIRE_SRGB;
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
  * - materials: material_count times a record, a name and a texture path (not terminated; the record has the lengths);
@@ -21,15 +22,15 @@
 
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
-enum { MESH_WIRE_VERSION = 4, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
+enum { MESH_WIRE_VERSION = 5, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
 enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 /* The largest magnitude of a coordinate. */
 #define MESH_WIRE_FAR 1e9
 /* The maximum of a colour component, an exponent or an index; larger values are errors in the file. */
 #define MESH_WIRE_COLOR_MAX 1e6
 
-enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 }; /* flags of the header */
-enum { MESH_WIRE_GIVEN = 1 };                      /* flag of a material: the file defines it */
+enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2, MESH_WIRE_COLORS = 4, MESH_WIRE_SRGB = 8 }; /* flags of the header */
+enum { MESH_WIRE_GIVEN = 1 }; /* flag of a material: the file defines it */
 /* What the alpha of a material's image, times its opacity, means (scene/model/material.h): nothing; no surface where it
  * is below alpha_cutoff; the opacity. */
 enum { MESH_WIRE_ALPHA_OPAQUE, MESH_WIRE_ALPHA_MASK, MESH_WIRE_ALPHA_BLEND };

@@ -141,6 +141,20 @@ static status resolve(obj_file *f, obj_part *o, const size_t before[3], const si
     return STATUS_OK;
 }
 
+/* Appends the colours of a part, whose places come after `before` others, to the first part's. */
+static bool merge_colors(obj_part *all, const obj_part *o, size_t before)
+{
+    if (o->color_count == 0)
+        return true;
+    if (!GROW(all->colors, all->color_room, before + o->color_count))
+        return false;
+    for (; all->color_count < before; all->color_count++)
+        memcpy(all->colors[all->color_count], (double[3]){1.0, 1.0, 1.0}, sizeof *all->colors);
+    memcpy(all->colors + before, o->colors, o->color_count * sizeof *o->colors);
+    all->color_count = before + o->color_count;
+    return true;
+}
+
 /* Appends the vertices, texture coordinates and normals of all parts to the first part's. */
 static status merge_parts(obj_file *f)
 {
@@ -150,7 +164,7 @@ static status merge_parts(obj_file *f)
         obj_part *o = &f->parts[i];
         memcpy(before[i], (size_t[3]){all->place_count, all->uv_count, all->normal_count}, sizeof before[i]);
         if (!GROW(all->places, all->place_room, all->place_count + o->place_count) ||
-            !GROW(all->uvs, all->uv_room, all->uv_count + o->uv_count) ||
+            !merge_colors(all, o, all->place_count) || !GROW(all->uvs, all->uv_room, all->uv_count + o->uv_count) ||
             !GROW(all->normals, all->normal_room, all->normal_count + o->normal_count))
             return no_memory_for(f->req, f->why);
         copy(all->places + all->place_count, o->places, o->place_count * sizeof *o->places);
@@ -159,8 +173,8 @@ static status merge_parts(obj_file *f)
         all->place_count += o->place_count;
         all->uv_count += o->uv_count;
         all->normal_count += o->normal_count;
-        free(o->places), free(o->uvs), free(o->normals);
-        o->places = o->normals = NULL;
+        free(o->places), free(o->uvs), free(o->normals), free(o->colors);
+        o->places = o->normals = o->colors = NULL;
         o->uvs = NULL;
     }
     for (int i = 0; i < f->part_count; i++)
@@ -215,16 +229,20 @@ static status find_slot(obj_file *f)
 
 /* --- vertices --- */
 
-static void numbers_of(const obj_file *f, obj_corner c, double numbers[8])
+static void numbers_of(const obj_file *f, obj_corner c, double numbers[JOIN_NUMBERS])
 {
+    static const double white[3] = {1.0, 1.0, 1.0};
     const obj_part *all = &f->parts[0];
-    memset(numbers, 0, 8 * sizeof *numbers);
+    const size_t place = (size_t)c.place - 1;
+    memset(numbers, 0, JOIN_NUMBERS * sizeof *numbers);
     for (int k = 0; k < 3; k++) /* + 0.0: -0 becomes 0 */
-        numbers[k] = all->places[c.place - 1][k] + 0.0;
+        numbers[k] = all->places[place][k] + 0.0;
     for (int k = 0; c.normal && k < 3; k++)
         numbers[3 + k] = all->normals[c.normal - 1][k] + 0.0;
     for (int k = 0; c.uv && k < 2; k++)
         numbers[6 + k] = all->uvs[c.uv - 1][k] + 0.0;
+    if (f->flat->with_colors)
+        join_color(f->flat, place < all->color_count ? all->colors[place] : white, numbers);
 }
 
 static bool is_last(const last_vertex *v, obj_corner c)
@@ -235,7 +253,7 @@ static bool is_last(const last_vertex *v, obj_corner c)
 /* Sets the vertices of up to JOIN_BLOCK corners. */
 static status join_corners(obj_file *f, const obj_corner *corners, size_t count, uint32_t *indices)
 {
-    double numbers[JOIN_BLOCK][8];
+    double numbers[JOIN_BLOCK][JOIN_NUMBERS];
     uint64_t hashes[JOIN_BLOCK];
     bool ready[JOIN_BLOCK];
     for (size_t i = 0; i < count; i++) {
@@ -308,14 +326,16 @@ static status assemble(obj_file *f)
 {
     uint64_t triangles = 0;
     for (const obj_part *o = f->parts; o < f->parts + f->part_count; o++) {
-        if (o->colors)
-            flat_note(f->flat, "colours of vertices are ignored");
+        if (o->clear)
+            flat_note(f->flat, VERTEX_ALPHA_NOTE);
         if (o->narrow)
             flat_note(f->flat, FLAT_FEW_CORNERS);
         triangles += o->corner_count - 2 * o->face_count;
         f->flat->with_uvs |= o->highest.uv > 0;
         f->flat->with_normals |= o->highest.normal > 0;
     }
+    f->flat->with_colors = f->parts[0].color_count > 0;
+    f->flat->srgb = true;
     TRY(flat_reserve(f->req, f->flat, triangles, f->why));
     f->last = large_calloc(f->parts[0].place_count, sizeof *f->last);
     if (!f->last || !join_reserve(&f->join, f->flat, f->parts[0].place_count))

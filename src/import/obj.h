@@ -28,14 +28,15 @@ typedef struct obj_event {
 typedef struct obj_part {
     const char *begin, *end; /* ends with a line end */
     double (*places)[3], (*uvs)[2], (*normals)[3];
+    double (*colors)[3]; /* of places, up to the last that has one; those without are white */
     obj_corner *corners;
     uint32_t *sizes; /* the number of corners of each face; NULL: three */
     obj_event *events;
-    size_t place_count, uv_count, normal_count, corner_count, face_count, event_count;
-    size_t place_room, uv_room, normal_room, corner_room, size_room, event_room;
+    size_t place_count, uv_count, normal_count, color_count, corner_count, face_count, event_count;
+    size_t place_room, uv_room, normal_room, color_room, corner_room, size_room, event_room;
     size_t until;  /* parsing stops after that many faces; 0: at the end */
     bool relative; /* there are relative indices */
-    bool colors;   /* vertices have some */
+    bool clear;    /* a vertex has an alpha below 1 */
     bool narrow;   /* a face had fewer than three corners, and was left out */
     obj_corner highest;
     uint32_t line;     /* lines so far */

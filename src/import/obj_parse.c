@@ -110,18 +110,28 @@ static const form normal_form = {3,
                                  "a normal has fewer than three numbers",
                                  "give three finite numbers"};
 
-/* Whether three numbers follow, a colour; with a weight before them, or without. Moves past them. */
-static bool skip_color(obj_part *o, const char **at)
+/* Reads the colour of the next place, if at least three numbers follow its coordinates: red, green, blue, and perhaps
+ * alpha. A single number is a weight. Moves past them. False: out of memory. */
+static bool read_color(obj_part *o, const char **at)
 {
+    static const double white[3] = {1.0, 1.0, 1.0};
     int count = 0;
-    double unused;
-    for (*at = skip_blanks(o, *at); !is_end(**at) && number_scan(at, &unused); *at = skip_blanks(o, *at))
+    double v[4] = {0.0, 0.0, 0.0, 1.0}, unused;
+    for (*at = skip_blanks(o, *at); !is_end(**at) && number_scan(at, count < 4 ? &v[count] : &unused);
+         *at = skip_blanks(o, *at))
         count++;
-    return count >= 3;
+    if (count < 3)
+        return true;
+    if (o->place_count >= o->color_room && !GROW(o->colors, o->color_room, o->place_count + 1))
+        return false;
+    for (; o->color_count < o->place_count; o->color_count++)
+        memcpy(o->colors[o->color_count], white, sizeof white);
+    memcpy(o->colors[o->color_count++], v, sizeof *o->colors);
+    o->clear |= v[3] < 1.0;
+    return true;
 }
 
-/* Reads the numbers of a statement. What follows them, such as the weight or colour of a place, is not used: x, y, z
- * are as written. */
+/* Reads the numbers of a statement. The weight of a place is not used: x, y, z are as written. */
 static const char *read_numbers(obj_part *o, const char *p, const form *f, double v[3])
 {
     int count = 0;
@@ -136,8 +146,8 @@ static const char *read_numbers(obj_part *o, const char *p, const form *f, doubl
     if (count < f->least)
         return fail(o, p, f->few, f->remedy);
     p = skip_blanks(o, p);
-    if (f == &place_form && !o->colors)
-        o->colors = skip_color(o, &p);
+    if (f == &place_form && !is_end(*p) && !read_color(o, &p))
+        return no_memory(o);
     return skip_statement(o, p);
 }
 
@@ -314,5 +324,6 @@ uint32_t obj_face_line(const obj_part *part, size_t face)
 
 void obj_part_release(obj_part *o)
 {
-    free(o->places), free(o->uvs), free(o->normals), free(o->corners), free(o->sizes), free(o->events);
+    free(o->places), free(o->uvs), free(o->normals), free(o->colors);
+    free(o->corners), free(o->sizes), free(o->events);
 }

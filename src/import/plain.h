@@ -71,8 +71,8 @@ bool lines_number(const char *word, size_t length, double *number);
 /* Format: Wavefront, Advanced Visualizer Manual, appendix B1, "Object Files". v, vt, vn, f, usemtl, mtllib; groups,
  * smoothing, lines, points and free-form surfaces are ignored. Faces may come before their vertices. */
 status obj_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
-/* Format: Greg Turk, "The PLY Polygon File Format", 1994. Vertices with positions, normals and texture coordinates,
- * faces and triangle strips, in any order; other elements and properties are ignored. */
+/* Format: Greg Turk, "The PLY Polygon File Format", 1994. Vertices with positions, normals, texture coordinates and
+ * colours, faces and triangle strips, in any order; other elements and properties are ignored. */
 status ply_read(const request *req, const char *text, size_t size, flat_mesh *flat, diagnostic *why);
 /* Binary: 80 bytes, a count, and 50 bytes per facet. Text: facets from 'solid' to 'endsolid', once or more often. The
  * normals are ignored. */

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLY_ELEMENTS_MAX = 16, PLY_PROPERTIES_MAX = 64, PLY_NUMBERS = 8 };
+enum { PLY_ELEMENTS_MAX = 16, PLY_PROPERTIES_MAX = 64, PLY_ALPHA = JOIN_NUMBERS, PLY_NUMBERS };
 
 typedef enum ply_type { PLY_NONE, PLY_I8, PLY_U8, PLY_I16, PLY_U16, PLY_I32, PLY_U32, PLY_F32, PLY_F64 } ply_type;
 
@@ -47,7 +47,8 @@ typedef struct ply {
     size_t stride;
     bool in_place; /* the vertices are in the file, in its byte order and unchecked; else in rows */
     ply_column columns[PLY_NUMBERS];
-    double (*rows)[PLY_NUMBERS];
+    double *rows; /* row_size numbers for each vertex */
+    size_t row_size;
     uint32_t *corners, *sizes; /* of faces: indices of vertices, and the number of each face's corners */
     size_t corner_count, corner_room, face_count, size_room;
     joiner join;
@@ -84,8 +85,25 @@ static int number_named(const char *word, size_t length)
     static const struct {
         const char *name;
         int number;
-    } all[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3}, {"ny", 4},        {"nz", 5},
-               {"s", 6}, {"t", 7}, {"u", 6}, {"v", 7},  {"texture_u", 6}, {"texture_v", 7}};
+    } all[] = {{"x", 0},
+               {"y", 1},
+               {"z", 2},
+               {"nx", 3},
+               {"ny", 4},
+               {"nz", 5},
+               {"s", 6},
+               {"t", 7},
+               {"u", 6},
+               {"v", 7},
+               {"texture_u", 6},
+               {"texture_v", 7},
+               {"red", JOIN_COLOR},
+               {"green", JOIN_COLOR + 1},
+               {"blue", JOIN_COLOR + 2},
+               {"diffuse_red", JOIN_COLOR},
+               {"diffuse_green", JOIN_COLOR + 1},
+               {"diffuse_blue", JOIN_COLOR + 2},
+               {"alpha", PLY_ALPHA}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (lines_is(word, length, all[i].name))
             return all[i].number;
@@ -125,10 +143,6 @@ static status read_element(ply *p)
 /* Notes a property of looks that is not read. */
 static void note_unread(const ply *p, const ply_element *e, const ply_property *of, const char *word, size_t length)
 {
-    static const char *const colors[] = {"red", "green", "blue", "diffuse_red", "diffuse_green", "diffuse_blue"};
-    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
-        if (e->kind == PLY_VERTEX && lines_is(word, length, colors[i]))
-            flat_note(p->flat, "colours of vertices are ignored");
     if (e->kind == PLY_FACE && of->count != PLY_NONE && lines_is(word, length, "texcoord"))
         flat_note(p->flat, TEXTURE_NOTE);
 }
@@ -365,23 +379,31 @@ static status check_number(const ply *p, int number, double value)
                        number < 3 ? ", or not within 1e9" : "");
 }
 
+/* The value of a column's type that means 1: of integers in colours, by their bytes or their two bytes. */
+static double full_value(int number, ply_type type)
+{
+    return number < JOIN_COLOR || type == PLY_F32 || type == PLY_F64 ? 1.0 : type == PLY_U16 ? 65535.0 : 255.0;
+}
+
 /* Reads the used numbers of vertices one by one. */
 static status read_rows(ply *p, const ply_element *e)
 {
     size_t room = 0;
+    for (int k = 0; k < PLY_NUMBERS; k++)
+        p->row_size = p->columns[k].type != PLY_NONE ? (size_t)k + 1 : p->row_size;
     for (p->index = 0; p->index < e->count; p->index++) {
-        if (!GROW(p->rows, room, p->index + 1))
+        if (!GROW(p->rows, room, (p->index + 1) * p->row_size))
             return no_memory_for(p->req, p->why);
         for (int q = 0; q < e->property_count; q++) {
             const ply_property *of = &e->properties[q];
             double value = 0.0;
-            if (of->number < 0) {
+            if (of->number < 0 || p->columns[of->number].type == PLY_NONE) {
                 TRY(skip(p, of));
                 continue;
             }
             TRY(read_number(p, of->type, &value));
             TRY(check_number(p, of->number, value));
-            p->rows[p->index][of->number] = value;
+            p->rows[p->index * p->row_size + (size_t)of->number] = value / full_value(of->number, of->type);
         }
         end_item(p);
     }
@@ -389,7 +411,7 @@ static status read_rows(ply *p, const ply_element *e)
         if (p->columns[k].type != PLY_NONE)
             p->columns[k] = (ply_column){PLY_F64, (size_t)k * sizeof(double)};
     p->base = (const char *)p->rows;
-    p->stride = sizeof *p->rows;
+    p->stride = p->row_size * sizeof *p->rows;
     return STATUS_OK;
 }
 
@@ -408,12 +430,14 @@ static status read_vertices(ply *p, const ply_element *e)
         if (p->columns[k].type == PLY_NONE)
             return diagnose(p->why, STATUS_BAD_INPUT, "export the file again", "the vertices have no x, y or z");
     const bool normals = p->columns[3].type && p->columns[4].type && p->columns[5].type,
-               uvs = p->columns[6].type && p->columns[7].type;
+               uvs = p->columns[6].type && p->columns[7].type,
+               colors = p->columns[8].type && p->columns[9].type && p->columns[10].type;
     for (int k = 3; k < PLY_NUMBERS; k++)
-        if (k < 6 ? !normals : !uvs)
+        if (k < 6 ? !normals : k < JOIN_COLOR ? !uvs : !colors)
             p->columns[k].type = PLY_NONE;
     p->flat->with_normals = normals;
     p->flat->with_uvs = uvs;
+    p->flat->with_colors = p->flat->srgb = colors;
     if (p->ascii || lists)
         return read_rows(p, e);
     const size_t left = (size_t)(p->text.end - p->text.at);
@@ -519,25 +543,43 @@ static status read_body(ply *p)
 
 /* --- the triangles --- */
 
-static status vertex_numbers(ply *p, size_t i, double numbers[PLY_NUMBERS])
+static status read_column(ply *p, size_t i, int k, double *number)
 {
-    const char *row = p->base + i * p->stride;
-    for (int k = 0; k < PLY_NUMBERS; k++) {
-        const ply_column *c = &p->columns[k];
-        numbers[k] = c->type == PLY_NONE ? 0.0 : scalar(row + c->offset, c->type, p->in_place && p->swap);
-        if (p->in_place && !(fabs(numbers[k]) <= MESH_WIRE_FAR)) {
-            p->text.at = row + c->offset;
-            p->index = i;
-            TRY(check_number(p, k, numbers[k]));
-        }
+    const ply_column *c = &p->columns[k];
+    const char *at = p->base + i * p->stride + c->offset;
+    *number = 0.0;
+    if (c->type == PLY_NONE)
+        return STATUS_OK;
+    *number = scalar(at, c->type, p->in_place && p->swap) / full_value(k, c->type);
+    if (!p->in_place || fabs(*number) <= MESH_WIRE_FAR)
+        return STATUS_OK;
+    p->text.at = at;
+    p->index = i;
+    return check_number(p, k, *number);
+}
+
+static status vertex_numbers(ply *p, size_t i, double numbers[JOIN_NUMBERS])
+{
+    double color[3] = {0.0, 0.0, 0.0}, alpha;
+    for (int k = 0; k < JOIN_COLOR; k++)
+        TRY(read_column(p, i, k, &numbers[k]));
+    if (!p->flat->with_colors) {
+        memset(numbers + JOIN_COLOR, 0, (JOIN_NUMBERS - JOIN_COLOR) * sizeof *numbers);
+        return STATUS_OK;
     }
+    for (int c = 0; c < 3; c++)
+        TRY(read_column(p, i, JOIN_COLOR + c, &color[c]));
+    join_color(p->flat, color, numbers);
+    TRY(read_column(p, i, PLY_ALPHA, &alpha));
+    if (p->columns[PLY_ALPHA].type != PLY_NONE && alpha < 1.0)
+        flat_note(p->flat, VERTEX_ALPHA_NOTE);
     return STATUS_OK;
 }
 
 /* Joins the vertices that faces use, in the order of the file; joined has their indices. */
 static status join_all(ply *p, uint32_t *joined)
 {
-    double numbers[JOIN_BLOCK][PLY_NUMBERS];
+    double numbers[JOIN_BLOCK][JOIN_NUMBERS];
     size_t from[JOIN_BLOCK], count = 0;
     uint32_t indices[JOIN_BLOCK];
     for (size_t i = 0; i < p->vertex_count; i++) {

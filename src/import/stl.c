@@ -21,7 +21,7 @@ typedef struct stl {
 /* Joins up to JOIN_BLOCK positions. */
 static status join(stl *s, double (*places)[3], size_t count, uint32_t *indices)
 {
-    double numbers[JOIN_BLOCK][8] = {{0}};
+    double numbers[JOIN_BLOCK][JOIN_NUMBERS] = {{0}};
     for (size_t i = 0; i < count; i++)
         memcpy(numbers[i], places[i], sizeof places[i]);
     return join_vertices(s->req, &s->join, s->flat, numbers, count, indices, s->why);

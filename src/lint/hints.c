@@ -111,7 +111,7 @@ static void hint_at_alpha(const scene *s, const solid *owner, const note_sink *t
     const int slots = face_material_slots(s, owner);
     for (int slot = 0; slot < (slots > 0 ? slots : 1); slot++) {
         const shading_material m = slots > 0 ? shading_material_of_face(s, owner, &owner->surface, slot)
-                                             : shading_material_of_solid(s, &owner->surface);
+                                             : shading_material_of_solid(s, owner, &owner->surface);
         if (!m.img || m.surface.alpha != ALPHA_OPAQUE || m.surface.transparency > 0.0 || !texture_covered(m.img))
             continue;
         note_report(taker, owner->name, "alpha",

@@ -4,6 +4,7 @@
 #include "base/cancel.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "image/image.h"
 #include "import/mesh_wire.h"
 #include "report/json.h"
 #include "scene/file/write.h"
@@ -17,8 +18,8 @@
 /* Size of the mesh's arrays. */
 static size_t memory_bytes(const mesh *m)
 {
-    const size_t by_vertex =
-        sizeof *m->vertices + (m->normals ? sizeof *m->normals : 0) + (m->uvs ? sizeof *m->uvs : 0);
+    const size_t by_vertex = sizeof *m->vertices + (m->normals ? sizeof *m->normals : 0) +
+                             (m->uvs ? sizeof *m->uvs : 0) + (m->colors ? sizeof *m->colors : 0);
     return m->vertex_count * by_vertex + m->triangle_count * (sizeof *m->triangles + (m->slots ? 1 : 0));
 }
 
@@ -69,8 +70,9 @@ void mesh_rows_text(FILE *stream, const mesh *m, const char *refusal)
         fprintf(stream, "shells     %zu\n", m->shell_count);
     if (refusal)
         fprintf(stream, "solid      no: %s\n", refusal);
-    fprintf(stream, "has       %s%s%s positions\n", m->normals ? " normals," : "",
-            m->uvs ? " texture coordinates," : "", m->single ? " single-precision" : " double-precision");
+    fprintf(stream, "has       %s%s%s%s positions\n", m->normals ? " normals," : "",
+            m->uvs ? " texture coordinates," : "", m->colors ? " colours," : "",
+            m->single ? " single-precision" : " double-precision");
     if (m->slot_count > 1)
         fprintf(stream, "materials  %d\n", m->slot_count);
     fprintf(stream, "memory     %s MB\n", number_format_digits((double)memory_bytes(m) / 1e6, 4, number));
@@ -93,12 +95,12 @@ static json_t *hole_json(const mesh *m)
 json_t *mesh_rows_json(const mesh *m, const char *refusal)
 {
     return json_pack(
-        "{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:I,s:s?,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
+        "{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:I,s:s?,s:b,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
         (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low", vector_json(m->bounds.low),
         "high", vector_json(m->bounds.high), "area", json_of_real(mesh_area(m)), "closed", m->closed, "volume",
         json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "shells",
         (json_int_t)m->shell_count, "refusal", refusal, "normals", m->normals != NULL, "texture_coordinates",
-        m->uvs != NULL, "single", m->single, "materials", m->slot_count, "bytes", (json_int_t)memory_bytes(m));
+        m->uvs != NULL, "colors", m->colors != NULL, "single", m->single, "materials", m->slot_count, "bytes", (json_int_t)memory_bytes(m));
 }
 
 /* --- formats of other programs --- */
@@ -120,12 +122,33 @@ static uint32_t corner_if(bool mirrored, const mesh_triangle *t, int k)
     return t->corner[mirrored && k > 0 ? 3 - k : k];
 }
 
+/* A component of a vertex's colour as OBJ and PLY files have it, in sRGB. */
+static float encoded_color(const mesh *m, size_t v, int c)
+{
+    return (float)srgb_encode((double)m->colors[v][c]);
+}
+
+/* Whether bytes represent all colours exactly. */
+static bool has_byte_colors(const mesh *m)
+{
+    bool exact = true;
+    for (size_t i = 0; exact && i < 3 * m->vertex_count && !cancel_asked_at(i); i++) {
+        const float value = m->colors[i / 3][i % 3], byte = rintf(255.0f * encoded_color(m, i / 3, (int)(i % 3)));
+        const float decoded = (float)srgb_decode((double)(float)((double)byte / 255.0));
+        exact = memcmp(&decoded, &value, sizeof value) == 0;
+    }
+    return exact;
+}
+
 static void write_obj(const mesh *m, bool mirrored, FILE *stream)
 {
     const int digits = m->single ? 9 : 17;
     for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
         const vec3 p = mirrored_if(mirrored, m->vertices[v]);
-        fprintf(stream, "v %.*g %.*g %.*g\n", digits, p.x, digits, p.y, digits, p.z);
+        fprintf(stream, "v %.*g %.*g %.*g", digits, p.x, digits, p.y, digits, p.z);
+        for (int c = 0; m->colors && c < 3; c++)
+            fprintf(stream, " %.9g", (double)encoded_color(m, v, c));
+        putc('\n', stream);
     }
     for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
         const mesh_triangle *one = &m->triangles[t];
@@ -167,6 +190,10 @@ static void write_ply(const mesh *m, bool mirrored, FILE *stream)
         fprintf(stream, "property %s nx\nproperty %s ny\nproperty %s nz\n", real, real, real);
     if (m->uvs)
         fprintf(stream, "property %s s\nproperty %s t\n", real, real);
+    const bool bytes = m->colors && has_byte_colors(m);
+    const char *of_color = bytes ? "uchar" : "float";
+    if (m->colors)
+        fprintf(stream, "property %s red\nproperty %s green\nproperty %s blue\n", of_color, of_color, of_color);
     fprintf(stream, "element face %zu\nproperty list uchar int vertex_indices\n%send_header\n", m->triangle_count,
             m->slots ? "property uchar material_index\n" : "");
     for (size_t v = 0; v < m->vertex_count && !cancel_asked(); v++) {
@@ -176,6 +203,13 @@ static void write_ply(const mesh *m, bool mirrored, FILE *stream)
         if (m->uvs) {
             put_real(m->uvs[v].u, m->single, stream);
             put_real(m->uvs[v].v, m->single, stream);
+        }
+        for (int c = 0; m->colors && c < 3; c++) {
+            const float color = encoded_color(m, v, c);
+            if (bytes)
+                putc((int)rintf(255.0f * color), stream);
+            else
+                put_real((double)color, true, stream);
         }
     }
     for (size_t t = 0; t < m->triangle_count && !cancel_asked(); t++) {
@@ -191,8 +225,8 @@ static void write_ply(const mesh *m, bool mirrored, FILE *stream)
 
 enum { GLB_HEADER = 12, GLB_CHUNK = 8, GL_FLOAT = 5126, GL_UINT = 5125, GL_VERTICES = 34962, GL_INDICES = 34963 };
 
-/* The second chunk, in order: positions, normals, texture coordinates, the triangles by slot, and the image files of
- * the looks, each filled up to a multiple of 4 bytes. */
+/* The second chunk, in order: positions, normals, texture coordinates, colours, the triangles by slot, and the image
+ * files of the looks, each filled up to a multiple of 4 bytes. */
 typedef struct glb_layout {
     const mesh_import *looks;       /* NULL: none */
     const char *path;               /* of the GLB file */
@@ -244,6 +278,10 @@ static void add_vertices(const mesh *m, bool mirrored, glb_layout *l)
         l->bad |=
             json_object_set_new(l->attributes, "TEXCOORD_0",
                                 json_integer(add_array(l, GL_VERTICES, GL_FLOAT, "VEC2", m->vertex_count, 8))) != 0;
+    if (m->colors)
+        l->bad |=
+            json_object_set_new(l->attributes, "COLOR_0",
+                                json_integer(add_array(l, GL_VERTICES, GL_FLOAT, "VEC3", m->vertex_count, 12))) != 0;
 }
 
 /* A path as a URI reference: RFC 3986, 2.3 and 3.3. */
@@ -284,9 +322,9 @@ static void add_images(glb_layout *l)
         add_to(l, l->views, NULL,
                json_pack("{s:i,s:I,s:I}", "buffer", 0, "byteOffset", (json_int_t)l->bytes, "byteLength",
                          (json_int_t)one->size));
-        json_t *image =
+        json_t *entry =
             json_pack("{s:I,s:s}", "bufferView", (json_int_t)json_array_size(l->views) - 1, "mimeType", type);
-        l->bad |= json_array_insert_new(l->images, (size_t)i, image) != 0;
+        l->bad |= json_array_insert_new(l->images, (size_t)i, entry) != 0;
         l->bytes += filled_up(one->size);
     }
 }
@@ -307,17 +345,17 @@ static void add_sampler(const imported_material *m, json_t *texture, glb_layout 
 
 static void add_texture(const imported_material *m, json_t *surface, glb_layout *l)
 {
-    json_int_t image = m->image - 1;
+    json_int_t source = m->image - 1;
     char *moved = NULL;
     if (!m->texture && !m->image)
         return;
     if (m->texture) {
         l->bad |= write_moved_path(m->texture, "", l->path, &moved, NULL) != STATUS_OK;
         add_to(l, l->images, NULL, json_pack("{s:o}", "uri", moved ? uri_json(moved) : NULL));
-        image = l->looks->image_count + (json_int_t)json_array_size(l->images) - 1;
+        source = l->looks->image_count + (json_int_t)json_array_size(l->images) - 1;
         free(moved);
     }
-    json_t *texture = json_pack("{s:I}", "source", image);
+    json_t *texture = json_pack("{s:I}", "source", source);
     add_sampler(m, texture, l);
     add_to(l, l->textures, NULL, texture);
     add_to(l, surface, "baseColorTexture", json_pack("{s:I}", "index", (json_int_t)json_array_size(l->textures) - 1));
@@ -450,6 +488,9 @@ static void put_numbers(const mesh *m, bool mirrored, const glb_layout *l, FILE 
         put_real(m->uvs[v].u, true, stream);
         put_real(1.0 - m->uvs[v].v, true, stream); /* v runs downwards */
     }
+    for (size_t v = 0; m->colors && v < m->vertex_count && !cancel_asked(); v++)
+        for (int c = 0; c < 3; c++)
+            put_real((double)m->colors[v][c], true, stream);
     for (int slot = 0; slot < m->slot_count; slot++)
         for (size_t t = 0; l->by_slot[slot] && t < m->triangle_count && !cancel_asked_at(t); t++)
             for (int k = 0; (m->slots ? m->slots[t] : 0) == slot && k < 3; k++)

@@ -11,9 +11,9 @@
 void mesh_rows_text(FILE *stream, const mesh *m, const char *refusal);
 json_t *mesh_rows_json(const mesh *m, const char *refusal);
 
-/*   obj  Wavefront: positions and triangles
- *   ply  Stanford, binary, little-endian: all data of the mesh (normals nx ny nz, texture coordinates s t, slots
- *        as material_index)
+/*   obj  Wavefront: positions, colours of vertices, and triangles
+ *   ply  Stanford, binary, little-endian: all data of the mesh (normals nx ny nz, texture coordinates s t,
+ *        colours red green blue, slots as material_index)
  *   glb  glTF 2.0, binary (Khronos, "glTF 2.0 Specification", 2021): all data of the mesh, as floats, and of its
  *        materials names, colours, emission, alpha, glass and images: those inside the mesh file are copied, the others
  *        named by their paths. Left out are highlights, cameras and lights

@@ -78,7 +78,6 @@ static void what_a_line_has_beyond_the_header_is_left_out(void **state)
 }
 
 #define TEXTURE_NOTE "the texture that the file names, and texture coordinates of faces, are not read"
-#define COLOR_NOTE "colours of vertices are ignored"
 
 static void looks_that_are_not_read_are_notes(void **state)
 {
@@ -94,7 +93,7 @@ static void looks_that_are_not_read_are_notes(void **state)
          TEXTURE_NOTE},
         {ASCII "element vertex 4\n" XYZ "property uchar red\nproperty uchar green\nproperty uchar blue\n" FACE
                "end_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n",
-         COLOR_NOTE},
+         NULL},
         {ASCII "element vertex 4\n" XYZ FACE "property uchar red\nend_header\n" CORNERS "4 0 1 2 3 9\n", NULL},
         {ASCII "element vertex 4\n" XYZ "element face 3\nproperty list uchar int vertex_indices\nend_header\n" CORNERS
                "2 0 1\n4 0 1 2 3\n0\n",

@@ -292,8 +292,7 @@ static void statements_of_a_library_are_read_or_ignored(void **state)
 static void what_faces_and_vertices_lose_is_a_note(void **state)
 {
     (void)state;
-    static const char colors[] = "colours of vertices are ignored",
-                      narrow[] = "faces with fewer than three corners are left out";
+    static const char narrow[] = "faces with fewer than three corners are left out";
     static const struct {
         const char *text, *note;
         bool normals, uvs;
@@ -305,9 +304,6 @@ static void what_faces_and_vertices_lose_is_a_note(void **state)
          "faces refer to texture coordinates that the file lacks: these are left out; faces refer to normals that the "
          "file lacks: these are left out",
          true, true},
-        {"v 0 0 0 1 .5 0\nv 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n", colors, false, false},
-        {"v 0 0 0 1\nv 1 0 0 1 0 0 0\nv 0 1 0 \\\n1 1 1 \\\n1\nf 1 2 3\n", colors, false, false},
-        {"v 0 0 0\nv 1 0 0 \\\n1 2 3\nv 0 1 0\nf 1 2 3\n", colors, false, false},
         {THREE "f 1 2 3\nf\n", narrow, false, false},
         {THREE "f 1\nf 1 2 3\n", narrow, false, false},
         {THREE "f 1 2 #3\nf 1 2 3\nl 1 2\n", narrow, false, false}};

@@ -418,15 +418,24 @@ static void a_changed_byte_is_refused(void **state)
     free(p.at);
 }
 
+/* A frame that is too bright for a film is refused. */
 static void render_with_every_hierarchy(scene *s)
 {
+    renderer *r = NULL;
+    diagnostic why = {0};
+    worked(renderer_create(isa_best(), NULL, &r, &why), &why);
     static const char *const kinds[] = {"none", "sphere", "octant", "bvh"};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         char text[64];
         snprintf(text, sizeof text, "render.accel=%s", kinds[i]);
         set(s, text);
-        render_result_destroy(render(s));
+        render_result *result = NULL;
+        const status code = renderer_render(r, s, NULL, &result, &why);
+        if (code != STATUS_OK && !strstr(why.what, "exceeds the film's range"))
+            worked(code, &why);
+        render_result_destroy(result);
     }
+    renderer_destroy(r);
 }
 
 /* Changes that the hash does not show, behind the scene's text: what is accepted can be rendered. */

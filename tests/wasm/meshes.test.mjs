@@ -241,6 +241,9 @@ const CASES = {
   'PLY, little endian, doubles': { 'thing.ply': plyBinary(true, 'double') },
   'PLY, big endian': { 'thing.ply': plyBinary(false) },
   'triangle strips of PLY': { 'thing.ply': STRIPS },
+  'an OBJ with colours': {
+    'thing.obj': 'v -1 0 0 1 0 .2\nv 1 0 0 .3 1 0\nv 0 2 0 0 .4 1\nv 0 -1 1\nf 1 2 3\nf 1 4 2\n',
+  },
   'STL as text': { 'thing.stl': stlText() },
   'STL, binary': { 'thing.stl': stlBinary() },
   'glTF with its bytes and image inside': { 'thing.gltf': gltf(false) },

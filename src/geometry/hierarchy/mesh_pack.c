@@ -237,20 +237,21 @@ status hierarchy_unpack(const mesh *m, pack_reader *from, hierarchy **out, hiera
 /* The head of a packed mesh. */
 typedef struct mesh_head {
     uint64_t vertices, triangles;
-    int64_t normals, uvs, slots, slot_count, closed, crowded, single; /* the first three: whether there are any */
+    /* the first four: whether there are any */
+    int64_t normals, uvs, colors, slots, slot_count, closed, crowded, single;
     bounds3 bounds;
     uint64_t hole_from, hole_to, hole_triangle;
     int64_t hole_sharing, hole_fault;
     uint64_t shells, hierarchies;
 } mesh_head;
-_Static_assert(sizeof(mesh_head) == 22 * 8, "no padding");
+_Static_assert(sizeof(mesh_head) == 23 * 8, "no padding");
 
 typedef struct mesh_array {
     void *bytes;
     size_t size;
 } mesh_array;
 
-enum { MESH_ARRAYS = 5 };
+enum { MESH_ARRAYS = 6 };
 
 static void list_arrays(const mesh *m, mesh_array out[MESH_ARRAYS])
 {
@@ -259,6 +260,7 @@ static void list_arrays(const mesh *m, mesh_array out[MESH_ARRAYS])
     out[2] = (mesh_array){m->normals, m->normals ? m->vertex_count * sizeof *m->normals : 0};
     out[3] = (mesh_array){m->uvs, m->uvs ? m->vertex_count * sizeof *m->uvs : 0};
     out[4] = (mesh_array){m->slots, m->slots ? m->triangle_count * sizeof *m->slots : 0};
+    out[5] = (mesh_array){m->colors, m->colors ? m->vertex_count * sizeof *m->colors : 0};
 }
 
 static const hierarchy *stored_hierarchy(const mesh *m, int kind)
@@ -272,6 +274,7 @@ static mesh_head head_of(const mesh *m)
                       .triangles = m->triangle_count,
                       .normals = m->normals != NULL,
                       .uvs = m->uvs != NULL,
+                      .colors = m->colors != NULL,
                       .slots = m->slots != NULL,
                       .slot_count = m->slot_count,
                       .closed = m->closed,
@@ -315,7 +318,8 @@ static bool within(const double *values, int count)
 
 static status check_head(const mesh_head *h, const pack_reader *from, diagnostic *why)
 {
-    const uint64_t flags = (uint64_t)(h->normals | h->uvs | h->slots | h->closed | h->crowded | h->single);
+    const uint64_t flags =
+        (uint64_t)(h->normals | h->uvs | h->colors | h->slots | h->closed | h->crowded | h->single);
     if (flags > 1 || h->slot_count < 1 || h->slot_count > MESH_SLOTS_MAX || h->hierarchies > HIERARCHY_KIND_COUNT)
         return pack_damaged(why, "the head of a mesh");
     if (!pack_holds(from, h->vertices, sizeof(vec3)) || !pack_holds(from, h->triangles, sizeof(mesh_triangle)))
@@ -389,7 +393,8 @@ status mesh_unpack(pack_reader *from, const mesh **out, diagnostic *why)
     TRY(pack_get(from, &head, sizeof head, why));
     TRY(check_head(&head, from, why));
     TRY(mesh_create(head.vertices, head.triangles, head.normals, head.uvs, head.slots, &m, why));
-    const status code = unpack_into(m, &head, from, why);
+    status code = head.colors ? mesh_add_colors(m, why) : STATUS_OK;
+    THEN(code, unpack_into(m, &head, from, why));
     if (code != STATUS_OK) {
         mesh_release(m);
         return code;

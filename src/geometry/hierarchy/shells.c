@@ -396,6 +396,8 @@ static void copy_vertex(const mesh *from, uint32_t v, mesh *to, uint32_t at)
         to->normals[at] = from->normals[v];
     if (to->uvs)
         to->uvs[at] = from->uvs[v];
+    if (to->colors)
+        memcpy(to->colors[at], from->colors[v], sizeof *to->colors);
 }
 
 static bool is_in(const shell_room *r, size_t t, int layer)
@@ -418,6 +420,8 @@ static status copy_layer(const shell_room *r, int layer, uint32_t *number, const
     mesh *part;
     TRY(mesh_create(vertices, triangles, m->normals, m->uvs, m->slots, &part, why));
     *out = part;
+    if (m->colors)
+        TRY(mesh_add_colors(part, why));
     part->slot_count = m->slot_count;
     if (!(part->numbers = malloc((triangles + 1) * sizeof *part->numbers)))
         return out_of_memory(why);

@@ -41,6 +41,7 @@ static void mesh_free(mesh *m)
     free(m->triangles);
     free(m->normals);
     free(m->uvs);
+    free(m->colors);
     free(m->slots);
     free(m->numbers);
     free(m);
@@ -59,14 +60,16 @@ static struct mesh_shared *shared_create(void)
 }
 
 /* Bytes of a mesh's arrays, and of the larger of the temporary arrays of mesh_weld and mesh_close. */
-static uint64_t bytes_of(uint64_t vertices, uint64_t triangles, bool with_normals, bool with_uvs, bool with_slots)
+static uint64_t bytes_of(uint64_t vertices, uint64_t triangles, bool with_normals, bool with_uvs, bool with_slots,
+                         bool with_colors)
 {
     uint64_t table = 16;
     while (table < 2 * vertices)
         table *= 2;
     const uint64_t weld = sizeof(uint32_t) * (table + vertices),
                    close = 2 * sizeof(uint32_t) * vertices + 7 * sizeof(uint32_t) * triangles;
-    return vertices * (sizeof(vec3) * (with_normals ? 2 : 1) + (with_uvs ? sizeof(mesh_uv) : 0)) +
+    return vertices * (sizeof(vec3) * (with_normals ? 2 : 1) + (with_uvs ? sizeof(mesh_uv) : 0) +
+                       (with_colors ? sizeof(float[3]) : 0)) +
            triangles * (sizeof(mesh_triangle) + (with_slots ? 1 : 0)) + (weld > close ? weld : close);
 }
 
@@ -79,7 +82,7 @@ status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_nor
     if (vertex_count > MESH_VERTICES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "a mesh of %zu vertices is too large",
                         vertex_count);
-    return memory_budget_check(bytes_of(vertex_count, triangle_count, with_normals, with_uvs, with_slots),
+    return memory_budget_check(bytes_of(vertex_count, triangle_count, with_normals, with_uvs, with_slots, false),
                                "use fewer triangles", why, "a mesh of %zu triangles", triangle_count);
 }
 
@@ -107,6 +110,15 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
     }
     *out = m;
     return STATUS_OK;
+}
+
+/* The other arrays count as well: their pages are not in use before they are written. */
+status mesh_add_colors(mesh *m, diagnostic *why)
+{
+    const uint64_t bytes = bytes_of(m->vertex_count, m->triangle_count, m->normals, m->uvs, m->slots, true);
+    TRY(memory_budget_check(bytes, "use fewer triangles", why, "a mesh of %zu triangles", m->triangle_count));
+    m->colors = large_calloc(m->vertex_count ? m->vertex_count : 1, sizeof *m->colors);
+    return m->colors ? STATUS_OK : no_room(why);
 }
 
 void mesh_retain(const mesh *m)
@@ -147,6 +159,10 @@ static status check_vertices(const mesh *m, diagnostic *why)
         if (m->uvs && !(fabs(m->uvs[v].u) <= MESH_FAR && fabs(m->uvs[v].v) <= MESH_FAR))
             return diagnose(why, STATUS_BAD_INPUT, "use finite texture coordinates of at most 1e9",
                             "vertex %zu has texture coordinates %g, %g", v, m->uvs[v].u, m->uvs[v].v);
+        for (int c = 0; m->colors && c < 3; c++)
+            if (!(m->colors[v][c] >= 0.0f && m->colors[v][c] <= 1.0f)) /* true for NaN */
+                return diagnose(why, STATUS_BAD_INPUT, "use colours from 0 to 1", "vertex %zu has a colour of %g", v,
+                                (double)m->colors[v][c]);
     }
     return STATUS_OK;
 }

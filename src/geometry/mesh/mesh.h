@@ -1,5 +1,5 @@
-/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face;
- * without triangles, a cloud of points.
+/* A triangle mesh: indexed vertices with optional normals, texture coordinates and colours, and one material slot per
+ * face; without triangles, a cloud of points.
  * Triangles are visible from both sides. The geometric normal (b - a) x (c - a) of a triangle points towards a viewer
  * in front, who sees its corners run clockwise in the left-handed world. A mesh whose every edge joins two triangles,
  * once in each direction, is closed: it bounds a volume, which is behind the fronts. So is one whose closed parts touch
@@ -63,6 +63,7 @@ typedef struct mesh {
     mesh_triangle *triangles;
     vec3 *normals;                    /* by vertex, unit vectors; NULL if there are none */
     mesh_uv *uvs;                     /* by vertex; NULL if there are none */
+    float (*colors)[3];               /* by vertex, linear RGB from 0 to 1; NULL if there are none */
     uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
     int slot_count;                   /* at least 1 */
     char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
@@ -90,14 +91,17 @@ status mesh_check_size(size_t vertex_count, size_t triangle_count, bool with_nor
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                    mesh **out, diagnostic *why);
 
+/* Gives an unfinished mesh the array of colours, all black. Errors as mesh_create. */
+status mesh_add_colors(mesh *m, diagnostic *why);
+
 /* Mirrors an unfinished mesh between right-handed and left-handed axes: z changes its sign, and the last two corners of
  * each triangle change places, so that fronts stay fronts. Twice is the identity, except that -0 becomes 0. When
  * cancelled it ends early, and mesh_finish fails. */
 void mesh_mirror(mesh *m);
 
-/* Finishes a mesh. Checks that indices are in range and coordinates finite and within MESH_FAR, normalises normals (a
- * zero normal becomes the triangle's), computes the bounds, and finds whether the mesh is closed; for this, vertices at
- * equal positions are one vertex (-0 equals 0) and a triangle with two equal corners is skipped.
+/* Finishes a mesh. Checks that indices are in range, coordinates finite and within MESH_FAR, and colours within 0 to 1,
+ * normalises normals (a zero normal becomes the triangle's), computes the bounds, and finds whether the mesh is closed;
+ * for this, vertices at equal positions are one vertex (-0 equals 0) and a triangle with two equal corners is skipped.
  *
  * Triangles with the wrong winding in an otherwise closed mesh are flipped, and so is a closed mesh that is inside out
  * (negative volume). A connected part of which three quarters of the triangles agree keeps their direction, so that a

@@ -448,7 +448,7 @@ static size_t number_vertices(const repair *r, uint32_t *number, vertex_copy *co
         }
         for (int k = 0; k < 3; k++) {
             const uint32_t v = added ? added[k] : m->triangles[t].corner[k],
-                           from = m->normals || m->uvs || v >= m->vertex_count ? v : r->n.same[v];
+                           from = m->normals || m->uvs || m->colors || v >= m->vertex_count ? v : r->n.same[v];
             if (!number[from]) {
                 copies[count] = (vertex_copy){from, added};
                 number[from] = (uint32_t)++count;
@@ -471,6 +471,8 @@ static void fill_vertices(const repair *r, const vertex_copy *copies, mesh *out)
             out->normals[v] = m->normals[from];
         if (out->uvs)
             out->uvs[v] = m->uvs[like];
+        if (out->colors)
+            memcpy(out->colors[v], m->colors[like], sizeof *out->colors);
     }
 }
 
@@ -484,6 +486,8 @@ static status assemble(const repair *r, mesh **out, diagnostic *why)
     status code = number && copies && corners ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK)
         code = mesh_create(number_vertices(r, number, copies, corners), all, m->normals, m->uvs, m->slots, out, why);
+    if (code == STATUS_OK && m->colors)
+        code = mesh_add_colors(*out, why);
     if (code == STATUS_OK) {
         memcpy((*out)->triangles, corners, all * sizeof *corners);
         fill_vertices(r, copies, *out);
@@ -512,6 +516,10 @@ static status copy_of(const mesh *m, mesh **out, diagnostic *why)
         memcpy((*out)->normals, m->normals, m->vertex_count * sizeof *m->normals);
     if (m->uvs)
         memcpy((*out)->uvs, m->uvs, m->vertex_count * sizeof *m->uvs);
+    if (m->colors) {
+        TRY(mesh_add_colors(*out, why));
+        memcpy((*out)->colors, m->colors, m->vertex_count * sizeof *m->colors);
+    }
     if (m->slots)
         memcpy((*out)->slots, m->slots, m->triangle_count);
     (*out)->slot_count = m->slot_count;

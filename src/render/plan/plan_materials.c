@@ -43,7 +43,7 @@ bool region_materials_make(const scene *s, const solid *owner, const material *s
         return false;
     if (slots == 0)
         *kept = out->mat;
-    out->mat[0] = shading_material_of_solid(s, surface);
+    out->mat[0] = shading_material_of_solid(s, owner, surface);
     out->mat[0].number = number_of(s, owner, NULL);
     for (int slot = 0; slot < slots; slot++) {
         const material *named;
@@ -99,7 +99,7 @@ bool plan_is_plain(const plan *p, int priority_index)
 {
     const region_materials *m = &p->shading_materials[priority_index];
     return m->count == 1 && !m->mat->img && !shading_material_is_partial(m->mat) && !(m->mat->surface.checker > 0.0) &&
-           !p->spectral;
+           !m->mat->vertex_colors && !p->spectral;
 }
 
 bool plan_find_shading_classes(plan *p)

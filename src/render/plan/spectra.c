@@ -167,10 +167,11 @@ static upsampled_spectrum upsample_surface(vec3 color)
     return upsample_reflectance((const double[3]){color.x, color.y, color.z});
 }
 
+static const double basis[SKY_BASIS_COUNT][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
+                                                 {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
 static bool upsample_scene(upsampled_scene *l, size_t priority_indices)
 {
-    static const double basis[SKY_BASIS_COUNT][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
-                                                     {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const scene *s = l->s;
     l->color = calloc(priority_indices, sizeof *l->color);
     l->checker_color = calloc(priority_indices, sizeof *l->checker_color);
@@ -275,6 +276,24 @@ static void fill_light(const upsampled_scene *l, spectra *p, size_t lamp)
         p->lights[(size_t)lines[k].wavelength * p->light_count + lamp] += lines[k].radiance;
 }
 
+/* The reflectances of the basis colours, if a mesh shows the colours of its vertices. False: out of memory. */
+static bool fill_tints(const scene *s, spectra *p)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->solid_count; i++)
+        any |= s->solids[i].visible && solid_shows_vertex_colors(s, &s->solids[i]);
+    if (!any)
+        return true;
+    if (!(p->tints = malloc(SPECTRA_COUNT * sizeof *p->tints)))
+        return false;
+    for (size_t k = 0; k < SKY_BASIS_COUNT; k++) {
+        const upsampled_spectrum one = upsample_reflectance(basis[k]);
+        for (size_t i = 0; i < SPECTRA_COUNT; i++)
+            p->tints[i][k] = upsampled_reflectance(&one, spectra_lambda((int64_t)i));
+    }
+    return true;
+}
+
 static bool fill_tables(const upsampled_scene *l, spectra *p)
 {
     p->rows = calloc(SPECTRA_COUNT, sizeof *p->rows);
@@ -294,7 +313,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
     p->per_offset = wavelengths_per_offset(&l->s->render);
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
         whiten(p, i);
-    return true;
+    return fill_tints(l->s, p);
 }
 
 spectra *spectra_create(const scene *s, const material *const *materials, const index_law *const *laws,
@@ -322,6 +341,7 @@ void spectra_destroy(spectra *p)
     free(p->regions);
     free(p->lights);
     free(p->white);
+    free(p->tints);
     free(p);
 }
 
@@ -350,10 +370,10 @@ int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t 
     return sample_key_with_wavelength(sample_key, wavelength);
 }
 
-/* A texel as a sum of white, a secondary and a primary colour: Smits, "An RGB to Spectrum Conversion for Reflectances",
- * JGT 4(4), 1999, with basis spectra upsampled like all other colours. Linear as long as the order of the channels does
- * not change. */
-static double texel_at(const spectral_row *row, vec3 rgb)
+/* A colour as a sum of white, a secondary and a primary colour: Smits, "An RGB to Spectrum Conversion for
+ * Reflectances", JGT 4(4), 1999, with basis spectra upsampled like all other colours. Linear as long as the order of
+ * the channels does not change. */
+static double basis_sum(const double by[SKY_BASIS_COUNT], vec3 rgb)
 {
     const double v[3] = {rgb.x, rgb.y, rgb.z};
     int low = v[0] <= v[1] ? (v[0] <= v[2] ? 0 : 2) : (v[1] <= v[2] ? 1 : 2);
@@ -361,8 +381,12 @@ static double texel_at(const spectral_row *row, vec3 rgb)
     if (high == low) /* a grey */
         high = (low + 1) % 3;
     const int middle = 3 - low - high;
-    return v[low] * row->basis[0] + (v[middle] - v[low]) * row->basis[1 + low] +
-           (v[high] - v[middle]) * row->basis[4 + high];
+    return v[low] * by[0] + (v[middle] - v[low]) * by[1 + low] + (v[high] - v[middle]) * by[4 + high];
+}
+
+double spectra_tint(const spectra *p, int64_t sample_key, vec3 color)
+{
+    return basis_sum(p->tints[sample_key_wavelength(sample_key)], color);
 }
 
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction)
@@ -372,7 +396,7 @@ double spectra_sky(const spectral_row *row, const background *sky, vec3 directio
     case BACKGROUND_UNIFORM: break;
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return (1.0 - up) * row->horizon + up * row->sky;
-    case BACKGROUND_IMAGE: return texel_at(row, sky_radiance(sky, direction));
+    case BACKGROUND_IMAGE: return basis_sum(row->basis, sky_radiance(sky, direction));
     case BACKGROUND_CIE: return up > 0.0 ? row->sky * cie_sky_relative(&sky->cie, direction) : row->horizon;
     }
     return row->sky;
@@ -384,7 +408,7 @@ double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mea
     case BACKGROUND_UNIFORM: break;
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return 0.75 * row->horizon + 0.25 * row->sky;
-    case BACKGROUND_IMAGE: return texel_at(row, mean);
+    case BACKGROUND_IMAGE: return basis_sum(row->basis, mean);
     case BACKGROUND_CIE: return 0.5 * (row->horizon + row->sky * sky->cie.mean);
     }
     return row->sky;

@@ -76,6 +76,8 @@ typedef struct spectra {
     double *lights;           /* by wavelength, then light: radiance of its colour times its intensity */
     double (*white)[3];       /* by offset: weights that make a pixel's wavelengths white under D65 */
     int64_t per_offset;       /* number of wavelengths that share one offset */
+    double (
+        *tints)[SKY_BASIS_COUNT]; /* by wavelength: reflectances of the basis colours; NULL: no vertex has a colour */
     line_table lines;
     size_t priority_indices, light_count;
 } spectra;
@@ -113,6 +115,9 @@ static inline double spectra_light(const spectra *p, int64_t sample_key, int lam
 {
     return p->lights[(size_t)sample_key_wavelength(sample_key) * p->light_count + (size_t)lamp];
 }
+
+/* The reflectance of a colour between the colours of a mesh's vertices, 0 to 1. */
+double spectra_tint(const spectra *p, int64_t sample_key, vec3 color);
 
 /* Radiance of the sky in a direction, and its mean over all directions; `mean` is the colour from sky_mean. */
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction);

@@ -44,6 +44,38 @@ void mesh_surface(tracer *t, int priority_index, const int *list)
         w->mapping[k] = instance_set_mapping(p->geometry->meshes, &w->hits[k]);
 }
 
+static vec3 vertex_color(const mesh *m, uint32_t vertex)
+{
+    const float *color = m->colors[vertex];
+    return vec3_make((double)color[0], (double)color[1], (double)color[2]);
+}
+
+/* a + u (b - a) + v (c - a), within 0 to 1: rounding could leave it where a triangle ends. */
+static double between(double a, double b, double c, const instance_hit *hit)
+{
+    const double value = a + hit->u * (b - a) + hit->v * (c - a);
+    return value > 0.0 ? (value < 1.0 ? value : 1.0) : 0.0;
+}
+
+void mesh_tint(tracer *t)
+{
+    const plan *p = t->target.frame_plan;
+    const instance_set *f = p->geometry->meshes;
+    group *g = &t->surface.gathered;
+    for (int k = 0; k < g->count; k++) {
+        const instance_hit *hit = &t->meshes->hits[k];
+        const mesh *m = f->parts[f->by_primitive[mesh_face_primitive(hit->face)]].triangles;
+        if (!m->colors)
+            continue; /* another solid's mesh bounds the region */
+        const uint32_t *corner = m->triangles[mesh_face_triangle(hit->face)].corner;
+        const vec3 a = vertex_color(m, corner[0]), b = vertex_color(m, corner[1]), c = vertex_color(m, corner[2]);
+        vec3 tint = vec3_make(between(a.x, b.x, c.x, hit), between(a.y, b.y, c.y, hit), between(a.z, b.z, c.z, hit));
+        if (p->spectral)
+            tint.x = tint.y = tint.z = spectra_tint(p->spectral, g->sample_key[k], tint);
+        g->cr[k] *= tint.x, g->cg[k] *= tint.y, g->cb[k] *= tint.z;
+    }
+}
+
 static vec3 geometric(const mesh_work *w, int k)
 {
     return vec3_make(w->points.gx[k], w->points.gy[k], w->points.gz[k]);

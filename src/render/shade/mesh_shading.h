@@ -16,12 +16,14 @@ typedef struct mesh_work {
 bool mesh_begin(tracer *t); /* begins a frame; false when out of memory */
 void mesh_end(tracer *t);
 
-/* mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light: removes light from behind the geometric
+/* mesh_tint: multiplies the gathered group's colours by those of the vertices, interpolated at the hit points.
+ * mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light: removes light from behind the geometric
  * triangle. mesh_bound_branches: corrects branches that an interpolated normal sends to the wrong side of the triangle.
  * mesh_face_normal: the normal of the triangle of record k, which faces the ray. mesh_lets_out: true if a direction
  * leads out of that triangle. mesh_corner_light: Gouraud's light. mesh_next_material: splits the group's list into
  * faces of equal material. */
 void mesh_surface(tracer *t, int priority_index, const int *list);
+void mesh_tint(tracer *t);
 void mesh_bound_light(tracer *t);
 void mesh_bound_branches(tracer *t);
 vec3 mesh_face_normal(const tracer *t, int k);

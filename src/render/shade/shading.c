@@ -192,18 +192,20 @@ static void color(tracer *t, int priority_index, const primitive *surface)
                          p->geometry->regions[priority_index].partial && cover_use_of(t) == COVER_SPLIT;
     for (int k = 0; t->surface.blended && k < t->surface.gathered.padded; k++)
         t->surface.cover[k] = t->surface.mat->opacity;
-    if (!p->spectral) {
+    if (p->spectral) {
+        /* First find which of the two colours applies, then its spectrum. */
+        material marked = t->surface.mat->surface;
+        marked.color = vec3_make(1.0, 0.0, 0.0);
+        marked.checker_color = vec3_make(0.0, 1.0, 0.0);
+        t->shade->color(&marked, frame, &t->surface.gathered);
+        spectral_colors(t, priority_index);
+    } else {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
         if (t->surface.mat->img)
             texture_colors(t, priority_index, surface);
-        return;
     }
-    /* First find which of the two colours applies, then its spectrum. */
-    material marked = t->surface.mat->surface;
-    marked.color = vec3_make(1.0, 0.0, 0.0);
-    marked.checker_color = vec3_make(0.0, 1.0, 0.0);
-    t->shade->color(&marked, frame, &t->surface.gathered);
-    spectral_colors(t, priority_index);
+    if (t->surface.mat->vertex_colors && t->surface.on_mesh)
+        mesh_tint(t);
 }
 
 /* --- a group --- */

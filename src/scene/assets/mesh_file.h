@@ -3,8 +3,8 @@
  * is validated. Thread safe. Node hierarchies are flattened, polygons triangulated, equal vertices merged, points
  * and lines dropped. Coordinates are the file's numbers, as doubles, unless a node or joints transform them. Normals
  * are the file's or none; facet normals of STL are ignored. Material libraries and images that do not exist are a
- * note of the import; buffers must exist. Vertex colours that differ, animation and the metalness of glTF are
- * ignored. Ownership: the import is the caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the
+ * note of the import; buffers must exist. The alpha of vertices, animation and the metalness of glTF are ignored.
+ * Ownership: the import is the caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the
  * file and the reason; STATUS_FAILURE if the importer cannot be started, or memory runs out. */
 #pragma once
 

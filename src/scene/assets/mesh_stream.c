@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "image/image.h"
 #include "import/mesh_wire.h"
 #include "scene/model/solids.h"
 
@@ -79,7 +80,7 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
     TRY(source->read(source->context, header, sizeof *header, why));
     if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION)
         return damaged(why, "it does not begin with the header of this version");
-    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS))
+    if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS | MESH_WIRE_COLORS | MESH_WIRE_SRGB))
         return damaged(why, "unknown flags");
     if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX)
         return damaged(why, "the number of materials is out of range");
@@ -108,6 +109,7 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
         {m->vertices, m->vertex_count * sizeof *m->vertices},
         {m->normals, m->normals ? m->vertex_count * sizeof *m->normals : 0},
         {m->uvs, m->uvs ? m->vertex_count * sizeof *m->uvs : 0},
+        {m->colors, m->colors ? m->vertex_count * sizeof *m->colors : 0},
         {m->triangles, m->triangle_count * sizeof *m->triangles},
         {m->slots, m->triangle_count},
     };
@@ -125,6 +127,23 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
         if (m->slots[t] >= m->slot_count)
             return damaged(why, "a triangle's material is out of range");
     return STATUS_OK;
+}
+
+/* Decodes colours from sRGB. Nearly all are of 8 bits, whose values are in a table. */
+static void decode_colors(mesh *m)
+{
+    enum { LAST = 255 };
+    float bytes[LAST + 1], decoded[LAST + 1];
+    for (int i = 0; i <= LAST; i++)
+        bytes[i] = (float)((double)i / LAST), decoded[i] = (float)srgb_decode((double)bytes[i]);
+    float *color = m->colors[0];
+    for (size_t i = 0; i < 3 * m->vertex_count && !cancel_asked_at(i); i++) {
+        if (!(color[i] >= 0.0f && color[i] <= 1.0f))
+            continue; /* mesh_finish refuses it */
+        const int byte = (int)(color[i] * (float)LAST + 0.5f);
+        color[i] =
+            memcmp(&bytes[byte], &color[i], sizeof *color) == 0 ? decoded[byte] : (float)srgb_decode((double)color[i]);
+    }
 }
 
 /* Reads a text of this length; *text is newly allocated, or NULL for length 0. NUL and other control characters are
@@ -294,6 +313,8 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
     TRY(read_header(source, limits, &header, why));
     TRY(mesh_create((size_t)header.vertex_count, (size_t)header.triangle_count, header.flags & MESH_WIRE_NORMALS,
                     header.flags & MESH_WIRE_UVS, true, &into->mesh, why));
+    if (header.flags & MESH_WIRE_COLORS)
+        TRY(mesh_add_colors(into->mesh, why));
     into->mesh->slot_count = into->material_count = (int)header.material_count;
     into->image_count = (int)header.image_count;
     into->view_count = (int)header.view_count;
@@ -304,7 +325,10 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
         return no_memory(why);
     TRY(read_arrays(source, into->mesh, why));
     TRY(read_rest(source, into, limits->right_handed, header.note_length, why));
-    into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
+    if (into->mesh->colors && header.flags & MESH_WIRE_SRGB)
+        decode_colors(into->mesh);
+    /* equal vertices are joined: mesh_wire.h */
+    into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs && !into->mesh->colors;
     if (limits->right_handed)
         mesh_mirror(into->mesh);
     return mesh_finish(into->mesh, why);

@@ -46,6 +46,12 @@ static const texture *image_of(const scene *s, const material *m)
     return t ? t->data : NULL;
 }
 
+bool solid_shows_vertex_colors(const scene *s, const solid *owner)
+{
+    const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
+    return m && m->data && m->data->colors;
+}
+
 static void apply_file_material(shading_material *mat, const material *base, const face_material *given)
 {
     mat->surface.color = given->color;
@@ -73,7 +79,10 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
     const material *named;
     const face_material *given;
     face_material_source(s, owner, slot, &named, &given);
-    shading_material mat = {.surface = *base, .img = image_of(s, named ? named : base), .opacity = 1.0};
+    shading_material mat = {.surface = *base,
+                            .img = image_of(s, named ? named : base),
+                            .opacity = 1.0,
+                            .vertex_colors = !named && solid_shows_vertex_colors(s, owner)};
     if (named)
         mat.surface = *named;
     else if (given)
@@ -91,9 +100,12 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
     return with_alpha(mat);
 }
 
-shading_material shading_material_of_solid(const scene *s, const material *base)
+shading_material shading_material_of_solid(const scene *s, const solid *owner, const material *base)
 {
-    return with_alpha((shading_material){.surface = *base, .img = image_of(s, base), .opacity = 1.0});
+    return with_alpha((shading_material){.surface = *base,
+                                         .img = image_of(s, base),
+                                         .opacity = 1.0,
+                                         .vertex_colors = solid_shows_vertex_colors(s, owner)});
 }
 
 bool shading_material_is_partial(const shading_material *m)
@@ -116,7 +128,7 @@ bool solid_is_partial(const scene *s, const solid *owner)
     if (integrator_traits_of(&s->render)->drawn || !solid_is_opaque(s, owner))
         return false;
     const int slots = face_material_slots(s, owner);
-    const shading_material own = shading_material_of_solid(s, &owner->surface);
+    const shading_material own = shading_material_of_solid(s, owner, &owner->surface);
     bool partial = slots == 0 && shading_material_is_partial(&own);
     for (int slot = 0; slot < slots && !partial; slot++) {
         const shading_material mat = shading_material_of_face(s, owner, &owner->surface, slot);

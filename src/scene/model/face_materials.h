@@ -13,8 +13,9 @@ bool has_face_materials(const scene *s, const solid *owner);
 typedef struct shading_material {
     material surface;
     const texture *img, *covered; /* covered: of img, where its alpha counts; else NULL */
-    double opacity; /* multiplies the image's alpha; below 1 only from a mesh file with alpha other than opaque */
-    int number;     /* 1-based index of a scene material; for a surface without one, the number of materials plus the
+    double opacity;     /* multiplies the image's alpha; below 1 only from a mesh file with alpha other than opaque */
+    bool vertex_colors; /* on a mesh, its vertices' colours multiply the surface's */
+    int number; /* 1-based index of a scene material; for a surface without one, the number of materials plus the
                    1-based index of the solid */
 } shading_material;
 
@@ -30,8 +31,11 @@ int face_material_slots(const scene *s, const solid *owner);
  * Under simple transmission the slot's transparency (MTL's d or Tr, glTF's alpha; base's if the file has opacity 1) and
  * reflectivity apply; otherwise the solid's. */
 shading_material shading_material_of_face(const scene *s, const solid *owner, const material *base, int slot);
-/* The material of a solid without slots. */
-shading_material shading_material_of_solid(const scene *s, const material *base);
+/* The material of a solid without slots, which has the material `base`. */
+shading_material shading_material_of_solid(const scene *s, const solid *owner, const material *base);
+/* Whether the colours of the vertices of the solid's mesh show on some of its faces: they belong to the materials of
+ * the mesh's file, and are left out with a material of the scene. */
+bool solid_shows_vertex_colors(const scene *s, const solid *owner);
 
 /* Whether alpha removes a part of the surface, and how much of it is there at texture coordinates (u, v), 0 to 1: with
  * alpha mask 0 or 1. */

@@ -143,6 +143,7 @@ static void hash_mesh(uint64_t *hash, const mesh *m)
     hash_array(hash, m->triangles, m->triangle_count * 3, sizeof(uint32_t));
     hash_array(hash, m->normals, m->vertex_count * 3, sizeof(double));
     hash_array(hash, m->uvs, m->vertex_count * 2, sizeof(double));
+    hash_array(hash, m->colors, m->vertex_count * 3, sizeof(float));
     hash_array(hash, m->slots, m->triangle_count, sizeof *m->slots);
     for (int i = 0; i < m->slot_count; i++)
         if (m->slot_names[i])
