@@ -32,8 +32,8 @@ static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers
     vec3 n = flat->with_normals ? flat->normals[index] : vec3_make(0, 0, 0);
     double u = flat->with_uvs ? flat->uvs[index].u : 0, v = flat->with_uvs ? flat->uvs[index].v : 0;
     memcpy(numbers, (double[JOIN_COLOR]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, JOIN_COLOR * sizeof *numbers);
-    for (int c = 0; flat->with_colors && c < 3; c++)
-        numbers[JOIN_COLOR + c] = (double)flat->colors[index][c];
+    for (int c = 0; c < 3; c++)
+        numbers[JOIN_COLOR + c] = flat->with_colors ? (double)flat->colors[index][c] : 0;
 }
 
 uint64_t join_hash(const flat_mesh *flat, const double numbers[JOIN_NUMBERS])
@@ -52,8 +52,10 @@ uint64_t join_hash(const flat_mesh *flat, const double numbers[JOIN_NUMBERS])
 void join_color(flat_mesh *flat, const double color[3], double numbers[JOIN_NUMBERS])
 {
     for (int c = 0; c < 3; c++) {
-        if (color[c] > 1 || color[c] < 0)
+        if (!flat->clamped && (color[c] > 1 || color[c] < 0)) {
+            flat->clamped = true;
             flat_note(flat, "colours of vertices that are not within 0 to 1 are taken as the nearest that is");
+        }
         numbers[JOIN_COLOR + c] = color[c] > 0 ? (double)(float)(color[c] < 1 ? color[c] : 1) : 0;
     }
 }
@@ -64,18 +66,23 @@ void join_prefetch(const joiner *j, uint64_t hash)
         __builtin_prefetch(&j->table[hash & (j->size - 1)]);
 }
 
+static bool is_vertex(const flat_mesh *flat, uint32_t index, const double numbers[JOIN_NUMBERS])
+{
+    double other[JOIN_NUMBERS];
+    if (memcmp(&flat->positions[index], numbers, sizeof *flat->positions) != 0)
+        return false;
+    if (numbers_used(flat) == 3)
+        return true;
+    vertex_numbers(flat, index, other);
+    return memcmp(other, numbers, sizeof other) == 0;
+}
+
 /* The table index of the vertex with these numbers, or of the empty entry for it. Entries are index + 1; 0 is empty. */
 static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[JOIN_NUMBERS], uint64_t hash)
 {
-    const size_t bytes = (size_t)numbers_used(flat) * sizeof *numbers;
     size_t at = hash & (j->size - 1);
-    while (j->table[at]) {
-        double other[JOIN_NUMBERS];
-        vertex_numbers(flat, j->table[at] - 1, other);
-        if (memcmp(other, numbers, bytes) == 0)
-            break;
+    while (j->table[at] && !is_vertex(flat, j->table[at] - 1, numbers))
         at = (at + 1) & (j->size - 1);
-    }
     return at;
 }
 
@@ -193,7 +200,7 @@ void flat_release(flat_mesh *flat)
     free(flat->positions), free(flat->normals), free(flat->uvs), free(flat->colors);
     free(flat->triangles), free(flat->slots);
     for (unsigned i = 0; i < flat->material_count; i++)
-        free(flat->materials[i].name), free(flat->materials[i].texture);
+        free(flat->materials[i].name), free(flat->materials[i].texture), free(flat->materials[i].glow);
     for (unsigned i = 0; i < flat->image_count; i++)
         free(flat->images[i].bytes);
     for (unsigned i = 0; i < flat->view_count; i++)
@@ -217,16 +224,19 @@ status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnos
     return flat->triangles && flat->slots ? STATUS_OK : no_memory_for(req, why);
 }
 
-status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
-                     const char *texture, uint8_t *slot, diagnostic *why)
+status flat_material(const request *req, flat_mesh *flat, const mesh_material *like, uint8_t *slot, diagnostic *why)
 {
     if (flat->material_count == MESH_WIRE_SLOTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "merge equal materials", "more than %d materials are in use",
                         (int)MESH_WIRE_SLOTS_MAX);
-    const mesh_material m = {.values = *values, .name = name_copy(name), .texture = texture ? strdup(texture) : NULL};
+    const mesh_material m = {.values = like->values,
+                             .name = name_copy(like->name),
+                             .texture = like->texture ? strdup(like->texture) : NULL,
+                             .glow = like->glow ? strdup(like->glow) : NULL};
     *slot = (uint8_t)flat->material_count;
     flat->materials[flat->material_count++] = m;
-    return (!name || m.name) && (!texture || m.texture) ? STATUS_OK : no_memory_for(req, why);
+    const bool complete = (!like->name || m.name) && (!like->texture || m.texture) && (!like->glow || m.glow);
+    return complete ? STATUS_OK : no_memory_for(req, why);
 }
 
 void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *number)
@@ -285,12 +295,15 @@ static void write_materials(const flat_mesh *flat, FILE *to)
         const mesh_material *m = &flat->materials[i];
         mesh_wire_material record = m->values;
         record.name_length = (uint32_t)text_length(m->name);
-        record.texture_length = (uint32_t)text_length(m->texture);
+        record.texture.path_length = (uint32_t)text_length(m->texture);
+        record.glow.path_length = (uint32_t)text_length(m->glow);
         fwrite(&record, sizeof record, 1, to);
         if (m->name)
             fwrite(m->name, 1, record.name_length, to);
         if (m->texture)
-            fwrite(m->texture, 1, record.texture_length, to);
+            fwrite(m->texture, 1, record.texture.path_length, to);
+        if (m->glow)
+            fwrite(m->glow, 1, record.glow.path_length, to);
     }
 }
 

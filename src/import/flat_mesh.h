@@ -41,9 +41,9 @@ status no_memory_for(const request *req, diagnostic *why);
 
 /* A material; its texts may be NULL. They are owned. */
 typedef struct mesh_material {
-    mesh_wire_material values; /* without the lengths */
-    char *name, *texture;
-    char *cover; /* the image of an MTL file's map_d; NULL once it is read */
+    mesh_wire_material values;   /* without the lengths */
+    char *name, *texture, *glow; /* the paths of images */
+    char *cover;                 /* the image of an MTL file's map_d; NULL once it is read */
 } mesh_material;
 
 /* An image file inside the mesh file; owned. */
@@ -70,7 +70,8 @@ typedef struct flat_mesh {
     uint32_t (*triangles)[3];
     uint8_t *slots; /* by triangle: index of its material */
     bool with_normals, with_uvs, with_colors;
-    bool srgb; /* colours are sRGB, as in OBJ and PLY files; otherwise linear */
+    bool clamped; /* a colour was not within 0 to 1 */
+    bool srgb;    /* colours are sRGB, as in OBJ and PLY files; otherwise linear */
     unsigned material_count;
     mesh_material materials[MESH_WIRE_SLOTS_MAX];
     unsigned image_count, view_count;
@@ -82,10 +83,9 @@ typedef struct flat_mesh {
 void flat_release(flat_mesh *flat);
 /* Makes the arrays for `count` triangles, and refuses more than the limit. */
 status flat_reserve(const request *req, flat_mesh *flat, uint64_t count, diagnostic *why);
-/* Adds a material for further triangles; *slot is its index. Name and texture are copied, control
- * characters of the name as ?; NULL: none. */
-status flat_material(const request *req, flat_mesh *flat, const mesh_wire_material *values, const char *name,
-                     const char *texture, uint8_t *slot, diagnostic *why);
+/* Adds a material for further triangles; *slot is its index. Its texts are copied, control characters of the name
+ * as ?. */
+status flat_material(const request *req, flat_mesh *flat, const mesh_material *like, uint8_t *slot, diagnostic *why);
 /* Adds an image, whose bytes it takes over; *number is its number from 1, or 0 if there are too many. */
 void flat_image(flat_mesh *flat, unsigned char *bytes, size_t size, uint32_t *number);
 /* Adds a camera or a light, unless there are too many; the name is copied, NULL: none. */

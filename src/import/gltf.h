@@ -97,12 +97,13 @@ uint32_t gltf_accessor_index(const gltf_accessor *a, size_t element);
 
 /* --- gltf_looks.c --- */
 
-/* How the base colour's texture is laid on: which texture coordinates, and u' = m[0] u + m[1] v + m[2], v' = m[3] u +
- * m[4] v + m[5]. */
+/* How the base colour's texture, or without it the emission's, is laid on: which texture coordinates, and u' = m[0] u +
+ * m[1] v + m[2], v' = m[3] u + m[4] v + m[5]. */
 typedef struct gltf_uv_map {
     uint64_t set;
     double m[6];
-    bool textured; /* there is such a texture */
+    bool textured;   /* there is such a texture, or one of the emission */
+    bool glow_apart; /* the emission's has other coordinates */
 } gltf_uv_map;
 
 /* Of a material, -1 for none. */

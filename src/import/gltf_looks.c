@@ -18,14 +18,11 @@ static const json_t *base_texture(gltf_item of)
 
 /* KHR_texture_transform: the coordinates, whose origin is the image's upper left corner, are scaled, then rotated
  * counter-clockwise as seen in the image, then moved. */
-status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out)
+static status read_uv_map(const gltf_file *g, gltf_item of, const json_t *texture, gltf_uv_map *out)
 {
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
+    const json_t *moved = gltf_extension(texture, "KHR_texture_transform");
     *out = PLAIN_MAP;
-    if (index < 0)
-        return STATUS_OK;
-    const gltf_item of = gltf_at(g, "materials", (size_t)index);
-    const json_t *texture = base_texture(of), *moved = gltf_extension(texture, "KHR_texture_transform");
     out->textured = texture != NULL;
     TRY(gltf_whole(g, of, texture, "texCoord", UINT32_MAX, 0, &out->set));
     if (!moved)
@@ -37,6 +34,20 @@ status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out)
     const double c = cos(angle), s = sin(angle);
     const double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
     memcpy(out->m, m, sizeof m);
+    return STATUS_OK;
+}
+
+status gltf_material_uv_map(const gltf_file *g, int64_t index, gltf_uv_map *out)
+{
+    *out = PLAIN_MAP;
+    if (index < 0)
+        return STATUS_OK;
+    gltf_uv_map other;
+    const gltf_item of = gltf_at(g, "materials", (size_t)index);
+    const json_t *base = base_texture(of), *glow = json_object_get(of.json, "emissiveTexture");
+    TRY(read_uv_map(g, of, base ? base : glow, out));
+    TRY(read_uv_map(g, of, glow ? glow : base, &other));
+    out->glow_apart = other.set != out->set || memcmp(other.m, out->m, sizeof other.m) != 0;
     return STATUS_OK;
 }
 
@@ -62,7 +73,7 @@ static status read_wrap(const gltf_file *g, gltf_item of, const char *key, uint3
     return STATUS_OK;
 }
 
-static status read_sampler(const gltf_file *g, int64_t index, mesh_wire_material *m)
+static status read_sampler(const gltf_file *g, int64_t index, mesh_wire_texture *m)
 {
     const gltf_item of = gltf_at(g, "samplers", (size_t)index);
     uint64_t near, far;
@@ -95,7 +106,7 @@ static void take_image(gltf_file *g, size_t index, unsigned char *bytes, size_t 
 }
 
 /* The image of a buffer or of a data: URI gets a number, that of a file its name in *path, which is the caller's. */
-static status read_image(gltf_file *g, size_t index, mesh_wire_material *m, char **path)
+static status read_image(gltf_file *g, size_t index, mesh_wire_texture *m, char **path)
 {
     const gltf_item of = gltf_at(g, "images", index);
     const char *uri = json_string_value(json_object_get(of.json, "uri"));
@@ -124,10 +135,10 @@ static status read_image(gltf_file *g, size_t index, mesh_wire_material *m, char
     return *path ? STATUS_OK : no_memory_for(g->req, g->why);
 }
 
-static status read_texture(gltf_file *g, gltf_item material, mesh_wire_material *m, char **path)
+static status read_texture(gltf_file *g, gltf_item material, const json_t *texture, mesh_wire_texture *m, char **path)
 {
     int64_t index, sampler, source;
-    TRY(gltf_index(g, material, base_texture(material), "index", "textures", &index));
+    TRY(gltf_index(g, material, texture, "index", "textures", &index));
     if (index < 0)
         return STATUS_OK;
     const gltf_item of = gltf_at(g, "textures", (size_t)index);
@@ -160,14 +171,28 @@ static status read_alpha(const gltf_file *g, gltf_item of, double factor, bool t
     return STATUS_OK;
 }
 
-/* Emission; an image of it cannot be shown, and without it the whole surface would shine. */
-static status read_emission(const gltf_file *g, gltf_item of, mesh_wire_material *m)
+/* The image of the emission; without it the whole surface would shine, so that one that lacks it emits nothing. */
+static status read_glow(gltf_file *g, gltf_item of, bool textured, mesh_wire_material *m, char **path, bool *lacks)
+{
+    const json_t *texture = json_object_get(of.json, "emissiveTexture");
+    gltf_uv_map map;
+    TRY(gltf_material_uv_map(g, (int64_t)of.index, &map));
+    if (texture && map.glow_apart)
+        flat_note(g->flat, "images of emission that are laid on unlike those of the colour cannot be shown: their "
+                           "surfaces emit nothing");
+    if (texture && textured && !map.glow_apart)
+        TRY(read_texture(g, of, texture, &m->glow, path));
+    *lacks = texture && !*path && !m->glow.image;
+    return STATUS_OK;
+}
+
+static status read_emission(gltf_file *g, gltf_item of, bool textured, mesh_wire_material *m, char **path)
 {
     double strength = 1;
-    if (json_object_get(of.json, "emissiveTexture")) {
-        flat_note(g->flat, "images of emission cannot be shown: their surfaces emit nothing");
+    bool lacks;
+    TRY(read_glow(g, of, textured, m, path, &lacks));
+    if (lacks)
         return STATUS_OK;
-    }
     TRY(gltf_numbers(g, of, of.json, "emissiveFactor", 3, m->emissive));
     TRY(gltf_numbers(g, of, gltf_extension(of.json, "KHR_materials_emissive_strength"), "emissiveStrength", 1,
                      &strength));
@@ -212,31 +237,31 @@ static void note_ignored(const gltf_file *g, gltf_item of)
         flat_note(g->flat, "images of normals, occlusion, metalness and roughness are ignored");
 }
 
-static status read_material(gltf_file *g, gltf_item of, const double tint[3], bool textured, mesh_wire_material *m,
-                            char **path)
+/* The caller frees the paths, also after an error. */
+static status read_material(gltf_file *g, gltf_item of, const double tint[3], bool textured, mesh_material *material)
 {
+    mesh_wire_material *m = &material->values;
     double color[4] = {1, 1, 1, 1};
     m->flags = MESH_WIRE_GIVEN;
     TRY(gltf_numbers(g, of, json_object_get(of.json, "pbrMetallicRoughness"), "baseColorFactor", 4, color));
     for (int c = 0; c < 3; c++)
         m->diffuse[c] = color[c] * tint[c];
     if (textured)
-        TRY(read_texture(g, of, m, path));
-    TRY(read_alpha(g, of, color[3], *path || m->image, m));
-    TRY(read_emission(g, of, m));
+        TRY(read_texture(g, of, base_texture(of), &m->texture, &material->texture));
+    TRY(read_alpha(g, of, color[3], material->texture || m->texture.image, m));
+    TRY(read_emission(g, of, textured, m, &material->glow));
     note_ignored(g, of);
     return read_glass(g, of, m);
 }
 
 status gltf_material_slot(gltf_file *g, int64_t index, const double tint[3], bool textured, uint8_t *slot)
 {
-    mesh_wire_material m = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = USUAL_IOR, .attenuation_color = {1, 1, 1}};
     const gltf_item of = index < 0 ? (gltf_item){0} : gltf_at(g, "materials", (size_t)index);
-    const char *name = json_string_value(json_object_get(of.json, "name"));
-    char *path = NULL;
-    status code = index < 0 ? STATUS_OK : read_material(g, of, tint, textured, &m, &path);
-    THEN(code, flat_material(g->req, g->flat, &m, name, path, slot, g->why));
-    free(path);
+    mesh_material m = {.values = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = USUAL_IOR, .attenuation_color = {1, 1, 1}},
+                       .name = (char *)(uintptr_t)json_string_value(json_object_get(of.json, "name"))};
+    status code = index < 0 ? STATUS_OK : read_material(g, of, tint, textured, &m);
+    THEN(code, flat_material(g->req, g->flat, &m, slot, g->why));
+    free(m.texture), free(m.glow);
     return code;
 }
 

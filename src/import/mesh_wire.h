@@ -11,7 +11,8 @@
  * - colours, if MESH_WIRE_COLORS is set: vertex_count x 3 floats from 0 to 1, linear RGB, or sRGB with MESH_WIRE_SRGB;
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
- * - materials: material_count times a record, a name and a texture path (not terminated; the record has the lengths);
+ * - materials: material_count times a record, a name and two paths of images (not terminated; the record has the
+ *   lengths);
  * - images: image_count times a length (uint64) and the bytes of an image file that is inside the mesh file;
  * - views: view_count times a record and a name: the cameras and lights of the file;
  * - the note (not terminated; the header has its length): what was not read, in words; 0: everything was read;
@@ -22,7 +23,7 @@
 
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
-enum { MESH_WIRE_VERSION = 5, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
+enum { MESH_WIRE_VERSION = 6, MESH_WIRE_TEXT_MAX = 1024, MESH_WIRE_SLOTS_MAX = 256 };
 enum { MESH_WIRE_IMAGES_MAX = MESH_WIRE_SLOTS_MAX, MESH_WIRE_VIEWS_MAX = 1024 };
 /* The largest magnitude of a coordinate. */
 #define MESH_WIRE_FAR 1e9
@@ -45,6 +46,12 @@ typedef struct mesh_wire_header {
     uint32_t image_count, view_count;     /* up to MESH_WIRE_IMAGES_MAX and MESH_WIRE_VIEWS_MAX */
 } mesh_wire_header;
 
+/* An image, and how it is laid on. */
+typedef struct mesh_wire_texture {
+    uint32_t path_length, image; /* image: from 1, instead of a path; both 0: none */
+    uint32_t wrap_u, wrap_v, filter;
+} mesh_wire_texture;
+
 /* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
@@ -53,9 +60,8 @@ typedef struct mesh_wire_material {
                             glass */
     double attenuation_color[3], attenuation_distance; /* of a volume: its transmittance after that way; 0: clear */
     double dispersion;                                 /* 20 / Abbe's number; 0: none */
-    uint32_t flags, name_length, texture_length;
-    uint32_t image;                              /* from 1, instead of a texture path; 0: none */
-    uint32_t alpha_mode, wrap_u, wrap_v, filter; /* of the texture */
+    uint32_t flags, name_length, alpha_mode, unused;
+    mesh_wire_texture texture, glow; /* which multiply the diffuse and the emitted colour */
 } mesh_wire_material;
 
 /* A camera or a light of the file, in its axes: it looks, or shines, along `forward`, a unit vector like `up`. */

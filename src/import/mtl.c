@@ -66,8 +66,8 @@ static status read_number(library *l, const char *keyword, double *number)
     return STATUS_OK;
 }
 
-/* Skips the values of an option of map_Kd or map_d, of which the last may be missing if they are numbers. False: no
- * option. */
+/* Skips the values of an option of map_Kd, map_Ke or map_d, of which the last may be missing if they are numbers.
+ * False: no option. */
 static bool skip_option(library *l, const char *keyword, const char *word, size_t length)
 {
     static const struct {
@@ -137,6 +137,9 @@ static void end_material(library *l, mesh_material *m)
                   m->name);
     free(m->cover);
     m->cover = NULL;
+    double *sent = m->values.emissive;
+    if (m->glow && sent[0] == 0 && sent[1] == 0 && sent[2] == 0)
+        sent[0] = sent[1] = sent[2] = 1; /* nobody gives an image to what cannot be seen */
 }
 
 static status new_material(library *l)
@@ -177,6 +180,8 @@ static status read_statement(library *l, const char *word, size_t length, mesh_m
         return read_texture(l, "map_Kd", &m->texture);
     if (lines_is(word, length, "map_d"))
         return read_texture(l, "map_d", &m->cover);
+    if (lines_is(word, length, "map_Ke"))
+        return read_texture(l, "map_Ke", &m->glow);
     if (lines_is(word, length, "Tr")) {
         double clear = 1 - v->opacity;
         TRY(read_number(l, "Tr", &clear));
@@ -287,7 +292,7 @@ status mtl_read(const request *req, const char *names, size_t length, mtl_librar
 void mtl_release(mtl_library *m)
 {
     for (size_t i = 0; i < m->count; i++)
-        free(m->list[i].name), free(m->list[i].texture), free(m->list[i].cover);
+        free(m->list[i].name), free(m->list[i].texture), free(m->list[i].glow), free(m->list[i].cover);
     free(m->list);
     *m = (mtl_library){0};
 }

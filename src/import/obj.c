@@ -209,7 +209,7 @@ static bool is_named(const mesh_material *m, const char *name, size_t length)
 /* Finds the slot of the current material, or makes it. A name that no library has is a material of the default grey. */
 static status find_slot(obj_file *f)
 {
-    static const mesh_wire_material none = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
+    static const mesh_material none = {.values = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1}};
     uint8_t slot;
     for (unsigned i = 0; i < f->flat->material_count; i++)
         if (is_named(&f->flat->materials[i], f->material, f->material_length)) {
@@ -219,9 +219,9 @@ static status find_slot(obj_file *f)
     char *name = f->material ? strndup(f->material, f->material_length) : NULL;
     if (f->material && !name)
         return no_memory_for(f->req, f->why);
-    const mesh_material m =
-        f->material ? mtl_find(&f->library, f->material, f->material_length) : (mesh_material){.values = none};
-    const status code = flat_material(f->req, f->flat, &m.values, name, m.texture, &slot, f->why);
+    mesh_material m = f->material ? mtl_find(&f->library, f->material, f->material_length) : none;
+    m.name = name;
+    const status code = flat_material(f->req, f->flat, &m, &slot, f->why);
     free(name);
     f->slot = slot;
     return code;

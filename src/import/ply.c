@@ -45,6 +45,7 @@ typedef struct ply {
     uint64_t vertex_count, index;          /* index: of the vertex, face or other item that is being read */
     const char *base;                      /* vertex i begins at base + i * stride */
     size_t stride;
+    bool clear;    /* a vertex has an alpha below 1 */
     bool in_place; /* the vertices are in the file, in its byte order and unchecked; else in rows */
     ply_column columns[PLY_NUMBERS];
     double *rows; /* row_size numbers for each vertex */
@@ -571,8 +572,7 @@ static status vertex_numbers(ply *p, size_t i, double numbers[JOIN_NUMBERS])
         TRY(read_column(p, i, JOIN_COLOR + c, &color[c]));
     join_color(p->flat, color, numbers);
     TRY(read_column(p, i, PLY_ALPHA, &alpha));
-    if (p->columns[PLY_ALPHA].type != PLY_NONE && alpha < 1.0)
-        flat_note(p->flat, VERTEX_ALPHA_NOTE);
+    p->clear |= p->columns[PLY_ALPHA].type != PLY_NONE && alpha < 1.0;
     return STATUS_OK;
 }
 
@@ -599,13 +599,15 @@ static status join_all(ply *p, uint32_t *joined)
 
 static status build_with(ply *p, uint32_t *joined)
 {
-    static const mesh_wire_material none = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
+    static const mesh_material none = {.values = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1}};
     uint8_t slot;
     uint32_t *at = p->corners;
     for (size_t c = 0; c < p->corner_count; c++)
         joined[p->corners[c]] = 1;
-    TRY(flat_material(p->req, p->flat, &none, NULL, NULL, &slot, p->why));
+    TRY(flat_material(p->req, p->flat, &none, &slot, p->why));
     TRY(join_all(p, joined));
+    if (p->clear)
+        flat_note(p->flat, VERTEX_ALPHA_NOTE);
     for (size_t c = 0; c < p->corner_count; c++)
         p->corners[c] = joined[p->corners[c]];
     for (size_t f = 0; f < p->face_count; at += p->sizes[f++])

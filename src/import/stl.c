@@ -29,12 +29,12 @@ static status join(stl *s, double (*places)[3], size_t count, uint32_t *indices)
 
 static status begin(stl *s, uint64_t facets, uint8_t *slot)
 {
-    static const mesh_wire_material none = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1};
+    static const mesh_material none = {.values = {.diffuse = {1, 1, 1}, .opacity = 1, .ior = 1}};
     TRY(flat_reserve(s->req, s->flat, facets, s->why));
     /* a closed mesh has half as many vertices as triangles */
     if (!join_reserve(&s->join, s->flat, (size_t)facets / 2 + 4))
         return no_memory_for(s->req, s->why);
-    return flat_material(s->req, s->flat, &none, NULL, NULL, slot, s->why);
+    return flat_material(s->req, s->flat, &none, slot, s->why);
 }
 
 /* --- binary --- */

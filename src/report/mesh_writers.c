@@ -330,7 +330,7 @@ static void add_images(glb_layout *l)
 }
 
 /* How an image is laid on, in numbers of OpenGL (3.8.4); nothing for the way of a texture without a sampler. */
-static void add_sampler(const imported_material *m, json_t *texture, glb_layout *l)
+static void add_sampler(const imported_texture *m, json_t *texture, glb_layout *l)
 {
     static const int wraps[] = {[MESH_WIRE_REPEAT] = 10497, [MESH_WIRE_MIRROR] = 33648, [MESH_WIRE_CLAMP] = 33071},
                      near[] = {[MESH_WIRE_TRILINEAR] = 9729, [MESH_WIRE_BILINEAR] = 9729, [MESH_WIRE_NEAREST] = 9728},
@@ -343,14 +343,14 @@ static void add_sampler(const imported_material *m, json_t *texture, glb_layout 
     add_to(l, texture, "sampler", json_integer((json_int_t)json_array_size(l->samplers) - 1));
 }
 
-static void add_texture(const imported_material *m, json_t *surface, glb_layout *l)
+static void add_texture(const imported_texture *m, const char *key, json_t *surface, glb_layout *l)
 {
     json_int_t source = m->image - 1;
     char *moved = NULL;
-    if (!m->texture && !m->image)
+    if (!imported_texture_exists(m))
         return;
-    if (m->texture) {
-        l->bad |= write_moved_path(m->texture, "", l->path, &moved, NULL) != STATUS_OK;
+    if (m->path) {
+        l->bad |= write_moved_path(m->path, "", l->path, &moved, NULL) != STATUS_OK;
         add_to(l, l->images, NULL, json_pack("{s:o}", "uri", moved ? uri_json(moved) : NULL));
         source = l->looks->image_count + (json_int_t)json_array_size(l->images) - 1;
         free(moved);
@@ -358,7 +358,7 @@ static void add_texture(const imported_material *m, json_t *surface, glb_layout 
     json_t *texture = json_pack("{s:I}", "source", source);
     add_sampler(m, texture, l);
     add_to(l, l->textures, NULL, texture);
-    add_to(l, surface, "baseColorTexture", json_pack("{s:I}", "index", (json_int_t)json_array_size(l->textures) - 1));
+    add_to(l, surface, key, json_pack("{s:I}", "index", (json_int_t)json_array_size(l->textures) - 1));
 }
 
 static void add_extension(json_t *to, const char *name, json_t *value, glb_layout *l)
@@ -410,12 +410,14 @@ static json_t *material_json(const imported_material *m, const char *name, glb_l
     json_t *surface =
         json_pack("{s:[f,f,f,f],s:f,s:f}", "baseColorFactor", fmin(m->color[0], 1.0), fmin(m->color[1], 1.0),
                   fmin(m->color[2], 1.0), alpha, "metallicFactor", 0.0, "roughnessFactor", 1.0);
-    add_texture(m, surface, l);
+    add_texture(&m->texture, "baseColorTexture", surface, l);
     add_to(l, one, "pbrMetallicRoughness", surface);
     if (name && name[0])
         add_to(l, one, "name", json_of_text(name));
-    if (brightest > 0.0)
+    if (brightest > 0.0) {
         add_to(l, one, "emissiveFactor", json_pack("[f,f,f]", e[0] / by, e[1] / by, e[2] / by));
+        add_texture(&m->glow, "emissiveTexture", one, l);
+    }
     if (json_object_size(extensions) > 0)
         l->bad |= json_object_set(one, "extensions", extensions) != 0;
     json_decref(extensions);

@@ -53,9 +53,9 @@ static void an_obj_with_two_materials_is_read(void **state)
     assert_true(red->ambient[0] == 0.125 && red->specular[2] == 0.75 && red->shininess == 40 && red->opacity == 1);
     assert_true(red->emissive[0] == 3 && red->emissive[1] == 0.5 && red->emissive[2] == 0 && glass->emissive[0] == 0);
     assert_true(glass->opacity == 0.25 && glass->ior == 1.5);
-    assert_null(glass->texture);
+    assert_null(glass->texture.path);
     char *img = in_folder("paint.png");
-    assert_string_equal(red->texture, img);
+    assert_string_equal(red->texture.path, img);
     free(img);
     mesh_import_destroy(got);
 }
@@ -83,8 +83,8 @@ static void texture_paths_are_found_in_other_spellings(void **state)
         free(library);
         mesh_import *got =
             read_text("spelling.obj", "mtllib spelling.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
-        assert_non_null(got->materials[0].texture);
-        assert_int_equal(access(got->materials[0].texture, R_OK), 0);
+        assert_non_null(got->materials[0].texture.path);
+        assert_int_equal(access(got->materials[0].texture.path, R_OK), 0);
         mesh_import_destroy(got);
     }
     free(img);

@@ -282,7 +282,7 @@ static void statements_of_a_library_are_read_or_ignored(void **state)
     assert_true(m->color[0] == 0.1 && m->color[1] == 0.2 && m->color[2] == 0.3 && m->emissive[2] == 0.5);
     assert_true(m->opacity == 0.75 && n->opacity == 0.5 && n->color[0] == 0.6 && n->ambient[0] == 0 && m->given);
     char *img = in_folder("my paint.png");
-    assert_string_equal(m->texture, img);
+    assert_string_equal(m->texture.path, img);
     assert_string_equal(got->note, "the option -s of map_Kd in 'forms.mtl' is ignored; the option -mm of map_Kd in "
                                    "'forms.mtl' is ignored");
     free(img);
@@ -372,7 +372,7 @@ static void missing_libraries_and_images_are_notes(void **state)
         mesh_import *got = read_text("missing.obj", text);
         assert_int_equal(got->material_count, 1);
         assert_string_equal(got->materials[0].name, "m");
-        assert_null(got->materials[0].texture);
+        assert_null(got->materials[0].texture.path);
         assert_true(got->materials[0].color[1] == (i == 1 ? 0 : 0.6));
         assert_string_equal(got->note, texts[i][1]);
         mesh_import_destroy(got);

@@ -370,7 +370,8 @@ static void place(tracer *t, const int *list)
 {
     raster_work *w = t->worker_data;
     bend(t, list);
-    if (t->target.frame_plan->render.texturing != TEXTURING_AFFINE || !t->surface.mat->img)
+    if (t->target.frame_plan->render.texturing != TEXTURING_AFFINE ||
+        (!t->surface.mat->img && !t->surface.mat->glow_img))
         return;
     straighten(t, list);
     t->surface.texture_at = w->at;

@@ -10,12 +10,23 @@
 #include "render/shade/polarisation.h"
 #include "render/shade/radiance.h"
 
+/* Adds the light that the material of a mesh file emits. Only RGB films have such materials. */
+static void expose_glow(tracer *t)
+{
+    const group *g = &t->surface.gathered;
+    const mesh_work *w = t->meshes;
+    for (int i = 0; i < g->count; i++)
+        shading_expose(t, g->sample_key[i], g->wr[i] * w->glow_r[i], g->wg[i] * w->glow_g[i], g->wb[i] * w->glow_b[i]);
+}
+
 /* Adds ambient and emitted light; in a spectral film, emission has the spectrum of daylight. */
 static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
     const group *g = &t->surface.gathered;
     const plan *p = t->target.frame_plan;
-    const double k_a = ambient ? m->ambient : 0.0, k_e = m->emission;
+    const double k_a = ambient ? m->ambient : 0.0, k_e = t->surface.mat->glows ? 0.0 : m->emission;
+    if (t->surface.mat->glows && !p->spectral)
+        expose_glow(t);
     if (k_a == 0.0 && k_e == 0.0)
         return;
     if (p->spectral) {

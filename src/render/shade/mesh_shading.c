@@ -40,7 +40,7 @@ void mesh_surface(tracer *t, int priority_index, const int *list)
         w->hits[k] = w->scratch.hit[list[k]];
     const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
     t->geometry->mesh_surface(p->geometry->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
-    for (int k = 0; t->surface.mat->img && k < g->count; k++)
+    for (int k = 0; (t->surface.mat->img || t->surface.mat->glow_img) && k < g->count; k++)
         w->mapping[k] = instance_set_mapping(p->geometry->meshes, &w->hits[k]);
 }
 

@@ -9,7 +9,9 @@ typedef struct mesh_work {
     instance_hit hits[ROW]; /* of the gathered group */
     mesh_points points;
     surface_mapping mapping[ROW]; /* if the material has a texture */
-    group corner; /* for Gouraud shading: the group with a corner of each triangle in place of the hit point */
+    double glow_r[ROW], glow_g[ROW],
+        glow_b[ROW]; /* light that the gathered group's points emit, if the material glows */
+    group corner;    /* for Gouraud shading: the group with a corner of each triangle in place of the hit point */
     lit_group corner_light;
 } mesh_work;
 

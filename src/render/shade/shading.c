@@ -145,30 +145,64 @@ static double pixel_width(const plan *p, vec3 point)
            camera_spread(&p->view, vec3_length(vec3_sub(point, p->view.eye)));
 }
 
-/* Multiplies the group's colours by the material's texture, and finds how much of a blended surface is there. */
-static void texture_colors(tracer *t, int priority_index, const primitive *surface)
-{
-    const plan *p = t->target.frame_plan;
-    group *g = &t->surface.gathered;
-    const double size = t->surface.mat->surface.texture_size;
+/* Texture coordinates of the group's points, and the width of a pixel in them. */
+typedef struct texture_points {
     double u[ROW], v[ROW], footprint[ROW];
+} texture_points;
+
+static void find_texture_points(const tracer *t, const primitive *surface, texture_points *at)
+{
+    const group *g = &t->surface.gathered;
+    const double size = t->surface.mat->surface.texture_size;
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
         const surface_mapping m =
             t->surface.on_mesh ? t->meshes->mapping[k]
                                : primitive_mapping(surface, g->points.face[k],
                                                    t->surface.texture_at ? t->surface.texture_at[k] : point, size);
-        if (t->surface.blended)
-            t->surface.cover[k] = shading_material_cover(t->surface.mat, m.u, m.v);
         /* An isotropic filter: at grazing incidence the footprint is limited to 20 pixel widths, or all would blur. */
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
-        u[k] = m.u, v[k] = m.v;
-        footprint[k] = pixel_width(p, point) / cosine * m.per_length;
+        at->u[k] = m.u, at->v[k] = m.v;
+        at->footprint[k] = pixel_width(t->target.frame_plan, point) / cosine * m.per_length;
     }
+}
+
+/* Multiplies the group's colours by the material's texture, and finds how much of a blended surface is there. */
+static void texture_colors(tracer *t, int priority_index, const texture_points *at)
+{
+    const plan *p = t->target.frame_plan;
+    group *g = &t->surface.gathered;
+    for (int k = 0; t->surface.blended && k < g->count; k++)
+        t->surface.cover[k] = shading_material_cover(t->surface.mat, at->u[k], at->v[k]);
     const bool weighted = t->surface.mat->covered && shading_material_is_partial(t->surface.mat) &&
                           p->geometry->regions[priority_index].partial;
-    t->shade->tint(weighted ? t->surface.mat->covered : t->surface.mat->img, g->count, u, v, footprint, g->cr, g->cg,
-                   g->cb);
+    t->shade->tint(weighted ? t->surface.mat->covered : t->surface.mat->img, g->count, at->u, at->v, at->footprint,
+                   g->cr, g->cg, g->cb);
+}
+
+/* Finds the light that the group's points emit. */
+static void glow(tracer *t, const texture_points *at)
+{
+    const shading_material *m = t->surface.mat;
+    const vec3 sent = vec3_scale(m->glow, m->surface.emission);
+    mesh_work *w = t->meshes;
+    const int count = t->surface.gathered.count;
+    for (int k = 0; k < count; k++)
+        w->glow_r[k] = sent.x, w->glow_g[k] = sent.y, w->glow_b[k] = sent.z;
+    if (m->glow_img)
+        t->shade->tint(m->glow_img, count, at->u, at->v, at->footprint, w->glow_r, w->glow_g, w->glow_b);
+}
+
+static void textured_colors(tracer *t, int priority_index, const primitive *surface)
+{
+    const shading_material *m = t->surface.mat;
+    texture_points at;
+    if (m->img || m->glow_img)
+        find_texture_points(t, surface, &at);
+    if (m->img)
+        texture_colors(t, priority_index, &at);
+    if (m->glows)
+        glow(t, &at);
 }
 
 /* Replaces the group's colours, (1, 0, 0) for the material's first colour, else (0, 1, 0), by spectral values. */
@@ -201,8 +235,8 @@ static void color(tracer *t, int priority_index, const primitive *surface)
         spectral_colors(t, priority_index);
     } else {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
-        if (t->surface.mat->img)
-            texture_colors(t, priority_index, surface);
+        if (t->surface.mat->img || t->surface.mat->glows)
+            textured_colors(t, priority_index, surface);
     }
     if (t->surface.mat->vertex_colors && t->surface.on_mesh)
         mesh_tint(t);

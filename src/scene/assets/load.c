@@ -139,42 +139,53 @@ static double at_most_one(double value)
     return value < 1.0 ? value : 1.0;
 }
 
-/* Whether two materials have the same image, laid on in the same way. */
-static bool same_image(const imported_material *a, const imported_material *b)
+/* Whether two textures are the same image, laid on in the same way. */
+static bool same_image(const imported_texture *a, const imported_texture *b)
 {
-    const bool same = a->texture ? b->texture && strcmp(a->texture, b->texture) == 0 : a->image && a->image == b->image;
+    const bool same = a->path ? b->path && strcmp(a->path, b->path) == 0 : a->image && !b->path && a->image == b->image;
     return same && a->wrap_u == b->wrap_u && a->wrap_v == b->wrap_v && a->filter == b->filter;
 }
 
-/* Reads the image of a slot, from a file or from inside the mesh file at mesh_path, or retains that of an earlier
- * slot. */
-static status read_image(const mesh_import *imported, int slot, const char *mesh_path, const char *root,
-                         face_material *list, diagnostic *why)
+/* The image of an earlier slot, or of this one. */
+static const texture *image_before(const mesh_import *imported, int slot, const imported_texture *t,
+                                   const face_material *list)
+{
+    for (int i = 0; i <= slot; i++) {
+        if (list[i].img && same_image(&imported->materials[i].texture, t))
+            return list[i].img;
+        if (list[i].glow_img && same_image(&imported->materials[i].glow, t))
+            return list[i].glow_img;
+    }
+    return NULL;
+}
+
+/* Reads an image of a slot, if it has one, from a file or from inside the mesh file at mesh_path, or retains an earlier
+ * one. */
+static status read_image(const mesh_import *imported, int slot, const imported_texture *t, const char *mesh_path,
+                         const char *root, const face_material *list, const texture **out, diagnostic *why)
 {
     static const texture_wrap wraps[] = {
         [MESH_WIRE_REPEAT] = TEXTURE_REPEAT, [MESH_WIRE_MIRROR] = TEXTURE_MIRROR, [MESH_WIRE_CLAMP] = TEXTURE_CLAMP};
     static const texture_filter filters[] = {[MESH_WIRE_TRILINEAR] = TEXTURE_TRILINEAR,
                                              [MESH_WIRE_BILINEAR] = TEXTURE_BILINEAR,
                                              [MESH_WIRE_NEAREST] = TEXTURE_NEAREST};
-    const imported_material *m = &imported->materials[slot];
-    for (int i = 0; i < slot; i++) {
-        if (list[i].img && same_image(&imported->materials[i], m)) {
-            list[slot].img = list[i].img;
-            texture_retain(list[i].img);
-            return STATUS_OK;
-        }
+    if (!imported_texture_exists(t))
+        return STATUS_OK;
+    if ((*out = image_before(imported, slot, t, list))) {
+        texture_retain(*out);
+        return STATUS_OK;
     }
     texture *img;
-    const texture_wrap u = wraps[m->wrap_u], v = wraps[m->wrap_v];
-    const texture_filter filter = filters[m->filter];
-    if (m->texture) {
-        TRY(texture_read_below(m->texture, root, TEXTURE_SRGB, u, v, filter, &img, why));
+    const texture_wrap u = wraps[t->wrap_u], v = wraps[t->wrap_v];
+    const texture_filter filter = filters[t->filter];
+    if (t->path) {
+        TRY(texture_read_below(t->path, root, TEXTURE_SRGB, u, v, filter, &img, why));
     } else {
-        const imported_image *inside = &imported->images[m->image - 1];
+        const imported_image *inside = &imported->images[t->image - 1];
         TRY(locate_failure(why, mesh_path,
                            texture_decode(inside->bytes, inside->size, TEXTURE_SRGB, u, v, filter, &img, why)));
     }
-    list[slot].img = img;
+    *out = img;
     return STATUS_OK;
 }
 
@@ -183,18 +194,13 @@ static double brightest(vec3 color)
     return fmax(color.x, fmax(color.y, color.z));
 }
 
-/* Emission is the surface's colour times a scalar in this program: the scalar gives the brightest channel its value in
- * the file. A black surface that emits gets the colour of the emission. */
 static void emit(face_material *mat, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
     if (!(brightest(sent) > 0.0))
         return;
-    if (brightest(mat->color) == 0.0) {
-        mat->color = vec3_scale(sent, 1.0 / brightest(sent));
-        mat->diffuse = 0.0;
-    }
-    mat->emission = fmin(brightest(sent) / brightest(mat->color), EMISSION_MAX);
+    mat->glow = vec3_scale(sent, 1.0 / brightest(sent));
+    mat->emission = fmin(brightest(sent), EMISSION_MAX);
 }
 
 /* Material files have a colour for each term of Phong's equation, this program a coefficient: the brightest channel. */
@@ -220,8 +226,10 @@ static status read_face_materials(const mesh_import *imported, const char *mesh_
 {
     for (int i = 0; i < imported->material_count; i++) {
         list[i] = face_material_of(&imported->materials[i]);
-        if (imported->materials[i].texture || imported->materials[i].image)
-            TRY(read_image(imported, i, mesh_path, root, list, why));
+        const imported_material *m = &imported->materials[i];
+        TRY(read_image(imported, i, &m->texture, mesh_path, root, list, &list[i].img, why));
+        if (list[i].emission > 0.0)
+            TRY(read_image(imported, i, &m->glow, mesh_path, root, list, &list[i].glow_img, why));
     }
     return STATUS_OK;
 }
@@ -240,7 +248,7 @@ static status make_face_materials(const mesh_import *imported, const char *mesh_
         code = face_materials_of(list, count, imported->note ? imported->note : "", out, why);
     else
         for (int i = 0; i < count; i++)
-            texture_release(list[i].img);
+            texture_release(list[i].img), texture_release(list[i].glow_img);
     free(list);
     return code;
 }

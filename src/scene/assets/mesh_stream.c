@@ -16,7 +16,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-_Static_assert(sizeof(mesh_wire_header) == 48 && sizeof(mesh_wire_material) == 22 * 8 + 32 &&
+_Static_assert(sizeof(mesh_wire_header) == 48 && sizeof(mesh_wire_material) == 22 * 8 + 56 &&
                    sizeof(mesh_wire_view) == 18 * 8 + 8,
                "no padding");
 _Static_assert((int)MESH_WIRE_SLOTS_MAX == (int)MESH_SLOTS_MAX && (int)MESH_WIRE_FAR == (int)MESH_FAR,
@@ -47,7 +47,8 @@ void mesh_import_destroy(mesh_import *imported)
         return;
     for (int i = 0; imported->materials && i < imported->material_count; i++) {
         free(imported->materials[i].name);
-        free(imported->materials[i].texture);
+        free(imported->materials[i].texture.path);
+        free(imported->materials[i].glow.path);
     }
     free(imported->materials);
     for (int i = 0; imported->images && i < imported->image_count; i++)
@@ -201,13 +202,25 @@ static status check_numbers(const imported_material *m, diagnostic *why)
                              m->name ? m->name : "", wrong);
 }
 
+static bool is_texture(const mesh_wire_texture *t, uint32_t image_count)
+{
+    return t->image <= image_count && !(t->image && t->path_length) && t->wrap_u <= MESH_WIRE_CLAMP &&
+           t->wrap_v <= MESH_WIRE_CLAMP && t->filter <= MESH_WIRE_NEAREST;
+}
+
+/* Without its path. */
+static imported_texture texture_of(const mesh_wire_texture *t)
+{
+    return (imported_texture){
+        .image = (int)t->image, .wrap_u = (int)t->wrap_u, .wrap_v = (int)t->wrap_v, .filter = (int)t->filter};
+}
+
 static status read_material(const mesh_source *source, uint32_t image_count, imported_material *m, diagnostic *why)
 {
     mesh_wire_material record;
     TRY(source->read(source->context, &record, sizeof record, why));
-    if (record.flags & ~(uint32_t)MESH_WIRE_GIVEN || record.image > image_count ||
-        (record.image && record.texture_length) || record.alpha_mode > MESH_WIRE_ALPHA_BLEND ||
-        record.wrap_u > MESH_WIRE_CLAMP || record.wrap_v > MESH_WIRE_CLAMP || record.filter > MESH_WIRE_NEAREST)
+    if (record.flags & ~(uint32_t)MESH_WIRE_GIVEN || record.alpha_mode > MESH_WIRE_ALPHA_BLEND ||
+        !is_texture(&record.texture, image_count) || !is_texture(&record.glow, image_count))
         return damaged(why, "unknown flags of a material");
     m->given = record.flags & MESH_WIRE_GIVEN;
     memcpy(m->color, record.diffuse, sizeof m->color);
@@ -223,12 +236,11 @@ static status read_material(const mesh_source *source, uint32_t image_count, imp
     m->attenuation_distance = record.attenuation_distance;
     m->dispersion = record.dispersion;
     m->alpha_mode = record.alpha_mode;
-    m->wrap_u = (int)record.wrap_u;
-    m->wrap_v = (int)record.wrap_v;
-    m->filter = (int)record.filter;
-    m->image = (int)record.image;
+    m->texture = texture_of(&record.texture);
+    m->glow = texture_of(&record.glow);
     TRY(read_text(source, record.name_length, &m->name, why));
-    TRY(read_text(source, record.texture_length, &m->texture, why));
+    TRY(read_text(source, record.texture.path_length, &m->texture.path, why));
+    TRY(read_text(source, record.glow.path_length, &m->glow.path, why));
     return check_numbers(m, why);
 }
 
@@ -542,27 +554,35 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-/* Adds to the note of the import that the material is without its image. */
-static status note_missing(mesh_import *imported, imported_material *m, diagnostic *why)
+/* Adds to the note of the import that the material is without its image. Without that of its emission it emits
+ * nothing: the whole surface would shine. */
+static status note_missing(mesh_import *imported, imported_material *m, imported_texture *image_of, diagnostic *why)
 {
-    char *note = text_format("%s%sthe image '%.200s' of material '%.100s' does not exist: the material is without it",
-                             imported->note ? imported->note : "", imported->note ? "; " : "", m->texture,
-                             m->name ? m->name : "");
+    const bool glow = image_of == &m->glow;
+    char *note = text_format("%s%sthe image '%.200s' of %smaterial '%.100s' does not exist: %s",
+                             imported->note ? imported->note : "", imported->note ? "; " : "", image_of->path,
+                             glow ? "the emission of " : "", m->name ? m->name : "",
+                             glow ? "it emits nothing" : "the material is without it");
     if (!note)
         return out_of_memory(why);
     free(imported->note);
     imported->note = note;
-    free(m->texture);
-    m->texture = NULL;
+    free(image_of->path);
+    image_of->path = NULL;
+    for (int c = 0; glow && c < 3; c++)
+        m->emissive[c] = 0.0;
     return STATUS_OK;
 }
 
-/* Finds the image of a material; the original spelling is tried first. */
-static status resolve(const char *path, mesh_import *imported, imported_material *m, diagnostic *why)
+/* Finds an image of a material; the original spelling is tried first. */
+static status resolve(const char *path, mesh_import *imported, imported_material *m, imported_texture *image_of,
+                      diagnostic *why)
 {
-    char *found = file_next_to(path, m->texture);
+    if (!image_of->path)
+        return STATUS_OK;
+    char *found = file_next_to(path, image_of->path);
     if (!exists(found)) {
-        char *respelt = strdup(m->texture);
+        char *respelt = strdup(image_of->path);
         if (respelt) {
             respell(respelt);
             free(found);
@@ -574,24 +594,27 @@ static status resolve(const char *path, mesh_import *imported, imported_material
         return out_of_memory(why);
     if (!exists(found)) {
         free(found);
-        return note_missing(imported, m, why);
+        return note_missing(imported, m, image_of, why);
     }
     if (!is_file(found)) {
-        diagnose(why, STATUS_BAD_INPUT,
-                 "put the image where the mesh file expects it, or remove the line that names it",
-                 "the image '%.200s' of material '%.100s' is not a regular file", m->texture, m->name ? m->name : "");
+        diagnose(
+            why, STATUS_BAD_INPUT, "put the image where the mesh file expects it, or remove the line that names it",
+            "the image '%.200s' of material '%.100s' is not a regular file", image_of->path, m->name ? m->name : "");
         free(found);
         return STATUS_BAD_INPUT;
     }
-    free(m->texture);
-    m->texture = found;
+    free(image_of->path);
+    image_of->path = found;
     return STATUS_OK;
 }
 
 status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (int i = 0; i < imported->material_count && code == STATUS_OK; i++)
-        code = imported->materials[i].texture ? resolve(path, imported, &imported->materials[i], why) : STATUS_OK;
+    for (int i = 0; i < imported->material_count && code == STATUS_OK; i++) {
+        imported_material *m = &imported->materials[i];
+        code = resolve(path, imported, m, &m->texture, why);
+        THEN(code, resolve(path, imported, m, &m->glow, why));
+    }
     return code;
 }

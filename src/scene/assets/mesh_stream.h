@@ -23,6 +23,18 @@ typedef struct mesh_limits {
 /* The limits with defaults filled in, at most MESH_TRIANGLES_MAX and MESH_VERTICES_MAX; limits may be NULL. */
 mesh_limits mesh_limits_complete(const mesh_limits *limits);
 
+/* An image, and how it is laid on: MESH_WIRE_REPEAT and so on (import/mesh_wire.h). */
+typedef struct imported_texture {
+    char *path; /* NULL: none; mesh_stream_read leaves it as written in the file */
+    int image;  /* the image inside the mesh file, from 1, instead of a path; 0: none */
+    int wrap_u, wrap_v, filter;
+} imported_texture;
+
+static inline bool imported_texture_exists(const imported_texture *t)
+{
+    return t->path || t->image;
+}
+
 /* A material of the file in the file's own conventions, all numbers finite. Colours are linear RGB of at least 0: Kd of
  * MTL is taken as linear, as in POV-Ray and most renderers, and glTF's factors are linear by definition. */
 typedef struct imported_material {
@@ -40,11 +52,9 @@ typedef struct imported_material {
     double transmission; /* KHR_materials_transmission, 0 to 1 */
     double attenuation_color[3], attenuation_distance; /* KHR_materials_volume; distance 0: clear */
     double dispersion;                                 /* KHR_materials_dispersion: 20 / Abbe's number; 0: none */
-    uint32_t alpha_mode;        /* MESH_WIRE_ALPHA_OPAQUE, _MASK or _BLEND (import/mesh_wire.h) */
-    int wrap_u, wrap_v, filter; /* of the image: MESH_WIRE_REPEAT and so on */
-    char *texture; /* path of the diffuse image (map_Kd, glTF baseColorTexture), NULL if there is none; mesh_stream_read
-                      leaves it as written in the file */
-    int image;     /* the image inside the mesh file, from 1, instead of a path; 0: none */
+    uint32_t alpha_mode;      /* MESH_WIRE_ALPHA_OPAQUE, _MASK or _BLEND (import/mesh_wire.h) */
+    imported_texture texture; /* multiplies the diffuse colour: map_Kd, glTF baseColorTexture */
+    imported_texture glow;    /* multiplies the emitted one: map_Ke, emissiveTexture */
 } imported_material;
 
 /* An image file inside the mesh file. */

@@ -64,6 +64,9 @@ static void apply_file_material(shading_material *mat, const material *base, con
     mat->surface.alpha_cutoff = given->alpha_cutoff;
     mat->opacity = given->alpha != ALPHA_OPAQUE ? given->opacity : 1.0;
     mat->img = given->img;
+    mat->glows = given->emission > 0.0;
+    mat->glow = given->glow;
+    mat->glow_img = given->glow_img;
 }
 
 static shading_material with_alpha(shading_material mat)

@@ -13,8 +13,11 @@ bool has_face_materials(const scene *s, const solid *owner);
 typedef struct shading_material {
     material surface;
     const texture *img, *covered; /* covered: of img, where its alpha counts; else NULL */
-    double opacity;     /* multiplies the image's alpha; below 1 only from a mesh file with alpha other than opaque */
-    bool vertex_colors; /* on a mesh, its vertices' colours multiply the surface's */
+    double opacity; /* multiplies the image's alpha; below 1 only from a mesh file with alpha other than opaque */
+    bool glows; /* of a mesh file: emits surface.emission times glow and glow_img, instead of times its own colour */
+    vec3 glow;
+    const texture *glow_img; /* NULL: none */
+    bool vertex_colors;      /* on a mesh, its vertices' colours multiply the surface's */
     int number; /* 1-based index of a scene material; for a surface without one, the number of materials plus the
                    1-based index of the solid */
 } shading_material;

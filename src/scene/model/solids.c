@@ -43,7 +43,7 @@ status face_materials_of(const face_material *list, int count, const char *note,
         if (materials)
             materials->mat[i] = list[i];
         else
-            texture_release(list[i].img);
+            texture_release(list[i].img), texture_release(list[i].glow_img);
     *out = materials;
     return materials ? STATUS_OK : out_of_memory(why);
 }
@@ -59,7 +59,7 @@ void face_materials_release(const face_materials *materials)
     if (!materials || atomic_fetch_sub(&mutable_count(materials)->references, 1) > 1)
         return;
     for (int i = 0; i < materials->count; i++)
-        texture_release(materials->mat[i].img);
+        texture_release(materials->mat[i].img), texture_release(materials->mat[i].glow_img);
     free(mutable_count(materials));
 }
 

@@ -63,10 +63,12 @@ typedef struct face_material {
     char name[SCENE_NAME_MAX + 1]; /* truncated if longer; "" for none */
     bool given;                    /* the file defines the material; otherwise the solid's own material is used */
     vec3 color;                    /* linear RGB, each at most 1 */
-    double diffuse, specular, shininess, emission, opacity;
+    double diffuse, specular, shininess, opacity;
+    double emission;      /* times glow and glow_img is the emitted light */
+    vec3 glow;            /* linear RGB, whose largest component is 1 */
     material_alpha alpha; /* with alpha other than opaque, the image's alpha is multiplied by opacity */
     double alpha_cutoff;
-    const texture *img; /* one reference; NULL for none */
+    const texture *img, *glow_img; /* one reference each; NULL for none */
 } face_material;
 
 /* The materials of a mesh file, by slot. Reference counted like their mesh; retain and release are thread safe. */

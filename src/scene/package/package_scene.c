@@ -16,17 +16,23 @@
 typedef struct face_record {
     char name[SCENE_NAME_MAX + 1];
     int64_t given;
-    double number[9]; /* colour, diffuse, specular, shininess, emission, opacity, alpha_cutoff */
+    double number[12]; /* colour, diffuse, specular, shininess, emission, opacity, alpha_cutoff, glow */
     int64_t alpha;
-    int64_t image; /* 0: none; 1: it follows; else the image of slot image - 2 */
+    /* 0: none; 1: it follows; else the image at place image - 2: slot i has places 2 i, and 2 i + 1 of its glow */
+    int64_t image, glow_image;
 } face_record;
-_Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 12 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
+_Static_assert(sizeof(face_record) == SCENE_NAME_MAX + 1 + 16 * 8 && SCENE_NAME_MAX % 8 == 7, "no padding");
 
-static int64_t image_of(const face_materials *l, int slot)
+static const texture *image_at(const face_material *m, int place)
 {
-    const texture *img = face_materials_at(l, slot)->img;
-    for (int i = 0; img && i < slot; i++)
-        if (face_materials_at(l, i)->img == img)
+    return place % 2 ? m->glow_img : m->img;
+}
+
+static int64_t image_of(const face_materials *l, int place)
+{
+    const texture *img = image_at(face_materials_at(l, place / 2), place);
+    for (int i = 0; img && i < place; i++)
+        if (image_at(face_materials_at(l, i / 2), i) == img)
             return i + 2;
     return img != NULL;
 }
@@ -36,12 +42,15 @@ static status put_material(pack_writer *to, const face_materials *l, int slot, d
     const face_material *m = face_materials_at(l, slot);
     face_record record = {.given = m->given,
                           .number = {m->color.x, m->color.y, m->color.z, m->diffuse, m->specular, m->shininess,
-                                     m->emission, m->opacity, m->alpha_cutoff},
+                                     m->emission, m->opacity, m->alpha_cutoff, m->glow.x, m->glow.y, m->glow.z},
                           .alpha = m->alpha,
-                          .image = image_of(l, slot)};
+                          .image = image_of(l, 2 * slot),
+                          .glow_image = image_of(l, 2 * slot + 1)};
     memcpy(record.name, m->name, sizeof record.name);
     TRY(pack_put(to, &record, sizeof record, why));
-    return record.image == 1 ? texture_pack(m->img, to, why) : STATUS_OK;
+    if (record.image == 1)
+        TRY(texture_pack(m->img, to, why));
+    return record.glow_image == 1 ? texture_pack(m->glow_img, to, why) : STATUS_OK;
 }
 
 static status put_face_materials(pack_writer *to, const face_materials *l, diagnostic *why)
@@ -57,10 +66,22 @@ static status put_face_materials(pack_writer *to, const face_materials *l, diagn
 static bool is_record(const face_record *r, int slot)
 {
     bool valid = memchr(r->name, 0, sizeof r->name) && r->given >= 0 && r->given <= 1 && r->image >= 0 &&
-                 r->image <= slot + 1 && r->alpha >= ALPHA_OPAQUE && r->alpha <= ALPHA_BLEND;
+                 r->image <= 2 * slot + 1 && r->glow_image >= 0 && r->glow_image <= 2 * slot + 2 &&
+                 r->alpha >= ALPHA_OPAQUE && r->alpha <= ALPHA_BLEND;
     for (size_t i = 0; i < sizeof r->number / sizeof *r->number; i++)
         valid = valid && r->number[i] >= 0.0 && r->number[i] <= NUMBER_MAX;
     return valid;
+}
+
+static status get_image(pack_reader *from, const face_material *list, int64_t number, const texture **out,
+                        diagnostic *why)
+{
+    if (number == 1)
+        return texture_unpack(from, out, why);
+    const int place = (int)number - 2;
+    if (number > 1 && (*out = image_at(&list[place / 2], place)))
+        texture_retain(*out);
+    return STATUS_OK;
 }
 
 static status get_material(pack_reader *from, face_material *list, int slot, diagnostic *why)
@@ -79,13 +100,11 @@ static status get_material(pack_reader *from, face_material *list, int slot, dia
                          .emission = n[6],
                          .opacity = n[7],
                          .alpha = (material_alpha)record.alpha,
-                         .alpha_cutoff = n[8]};
+                         .alpha_cutoff = n[8],
+                         .glow = {n[9], n[10], n[11]}};
     memcpy(m->name, record.name, sizeof m->name);
-    if (record.image == 1)
-        return texture_unpack(from, &m->img, why);
-    if (record.image > 1 && (m->img = list[record.image - 2].img))
-        texture_retain(m->img);
-    return STATUS_OK;
+    TRY(get_image(from, list, record.image, &m->img, why));
+    return get_image(from, list, record.glow_image, &m->glow_img, why);
 }
 
 static status get_list(pack_reader *from, face_material *list, int count, const face_materials **out, diagnostic *why)
@@ -94,7 +113,7 @@ static status get_list(pack_reader *from, face_material *list, int count, const 
         const status code = get_material(from, list, i, why);
         if (code != STATUS_OK) {
             for (int k = 0; k <= i; k++)
-                texture_release(list[k].img);
+                texture_release(list[k].img), texture_release(list[k].glow_img);
             return code;
         }
     }

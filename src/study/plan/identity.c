@@ -135,6 +135,11 @@ static void hash_material(uint64_t *hash, const face_material *m)
     hash_texture(hash, m->img);
     if (m->img)
         *hash = texture_sampler_hash(m->img, *hash);
+    const double glow[] = {(double)(sizeof later / sizeof *later), m->glow.x, m->glow.y, m->glow.z};
+    hash_array(hash, m->emission > 0.0 ? glow : NULL, sizeof glow / sizeof *glow, sizeof *glow);
+    hash_texture(hash, m->glow_img);
+    if (m->glow_img)
+        *hash = texture_sampler_hash(m->glow_img, *hash);
 }
 
 static void hash_mesh(uint64_t *hash, const mesh *m)
