@@ -106,6 +106,9 @@ bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *
     for (size_t i = 0; i < s->texture_count; i++)
         if (matches_file(&x, s->textures[i].path))
             return true;
+    for (size_t i = 0; i < s->data_count; i++)
+        if (matches_file(&x, s->data[i].path))
+            return true;
     for (size_t i = 0; i < s->mesh_count; i++) {
         const mesh_entry *m = &s->meshes[i];
         if ((m->source == MESH_FILE && matches_file(&x, m->path)) ||

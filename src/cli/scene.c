@@ -146,7 +146,7 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "remove '=SHAPE'", "a %.20s has no shape", kind);
     static const param_group groups[] = {PARAM_SOLID,    PARAM_LIGHT, PARAM_BEAM,
-                                         PARAM_MATERIAL, PARAM_MESH,  PARAM_TEXTURE};
+                                         PARAM_MATERIAL, PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA};
     int which = 0;
     TRY(options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why));
     return scene_add(s, groups[which], name, NULL, why);
@@ -335,7 +335,7 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
 
 static status print_list(const scene *s)
 {
-    static const param_group groups[] = {PARAM_MESH,  PARAM_TEXTURE, PARAM_MATERIAL,
+    static const param_group groups[] = {PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA, PARAM_MATERIAL,
                                          PARAM_LIGHT, PARAM_BEAM,    PARAM_SOLID};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
         for (size_t i = 0; i < param_place_group_size(s, groups[g]); i++) {

@@ -194,7 +194,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_sink *ta
     else if (material_scattering(m, &s->render) > 0.0 && s->render.polarisation)
         note_report(taker, owner->name, "scatter_per_m", "",
                     "the light that %s scatters is unpolarised: its phase function does not polarise", owner->name);
-    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
+    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_DATA))
         note_report(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                     "%s has coefficients but no dispersion law", owner->name);
     if (ignores_face_transparency(s, owner))

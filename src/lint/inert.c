@@ -27,6 +27,7 @@ static bool is_of_region(const inert_case *c)
                                            "ior",
                                            "medium",
                                            "coefficients",
+                                           "medium_data",
                                            "absorb_per_m",
                                            "absorb_spectrum",
                                            "scatter_per_m",

@@ -75,7 +75,7 @@ bool no_medium(const inert_case *c)
 bool no_law(const inert_case *c)
 {
     const int64_t law = c->m->medium;
-    return (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE) &&
+    return (law == MEDIUM_IOR || law >= MEDIUM_DATA) &&
            inert_say(c, "no-law", inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
                      "medium %s has no coefficients", medium_words[law]);
 }

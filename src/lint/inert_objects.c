@@ -340,6 +340,39 @@ bool unused_texture(const inert_case *c)
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");
 }
 
+bool unused_data(const inert_case *c)
+{
+    const scene *s = c->s;
+    const solid *clear = NULL;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const solid *one = &s->solids[i];
+        if (one->visible && one->surface.medium == MEDIUM_DATA && strcmp(one->surface.medium_data, c->name) == 0)
+            return false;
+        clear = one->visible && !material_is_opaque(&one->surface) ? one : clear;
+    }
+    const inert_remedy remedy = clear ? inert_set("%s.medium=data and %s.medium_data=%s", clear->name, clear->name, c->name)
+                                      : inert_set_clear(NULL);
+    return inert_say(c, "unused-data", remedy.text, "no visible solid has these data");
+}
+
+static bool ends_in(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), size = strlen(ending);
+    return length >= size && strcasecmp(path + length - size, ending) == 0;
+}
+
+/* Each kind of file has its own parameters: scene/assets/optical_files.h. */
+bool not_of_file(const inert_case *c)
+{
+    const char *path = c->s->data[c->at.index].path;
+    const bool glasses = ends_in(path, ".agf"), database = ends_in(path, ".yml") || ends_in(path, ".yaml");
+    if (is_named(c, "glass") && !glasses)
+        return inert_say(c, "no-catalogue", "use a catalogue, which ends in .agf", "the file is no catalogue of glasses");
+    if ((is_named(c, "column") || is_named(c, "scale")) && (glasses || database))
+        return inert_say(c, "no-columns", "use a table, such as one that ends in .csv", "the file has no columns");
+    return false;
+}
+
 /* Float images are linear already: image/texture.c. */
 bool of_floats(const inert_case *c)
 {

@@ -122,6 +122,8 @@ static const needs_row rows[] = {
     NEEDS(MESH, "ground_y restitution friction", "ground=on"),
     FACT(TEXTURE, "*", unused_texture),
     FACT(TEXTURE, "space", of_floats),
+    FACT(DATA, "*", unused_data),
+    FACT(DATA, "glass column scale relative_to", not_of_file),
 
     ACTS_WHERE(LIGHT, "position target kind", moves_sky),
     NEEDS(LIGHT, "color", "spectrum=color"),
@@ -166,7 +168,8 @@ static const needs_row rows[] = {
     FACT(MATERIAL, "specular shininess", no_highlight),
     FACT(MATERIAL, "reflectivity", no_reflectivity),
     FACT(MATERIAL, "coefficients", no_law),
-    FACT(MATERIAL, "ior coefficients", no_index),
+    NEEDS(MATERIAL, "medium_data", "medium=data"),
+    FACT(MATERIAL, "ior coefficients medium_data", no_index),
     FACT(MATERIAL, "medium", no_medium),
     NEEDS(MATERIAL, "extinction", "transparency=0"),
     NEEDS(MATERIAL, "extinction", "medium=ior"),

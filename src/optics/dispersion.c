@@ -1,7 +1,9 @@
 /* The formulas of the dispersion laws, the Abbe number, and the check of a law. */
 #include "optics/dispersion.h"
 
+#include "base/elementary.h"
 #include "base/number.h"
+#include "optics/curve.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -16,6 +18,14 @@ static const struct {
     [DISPERSION_CAUCHY] = {"cauchy", "n = A + B / L^2 + C / L^4 + ..., L in um"},
     [DISPERSION_GAS] = {"gas", "n - 1 = sum of B / (C - L^-2), L in um, B and C in um^-2"},
     [DISPERSION_TABLE] = {"table", "linear between pairs of a wavelength in nm and its n"},
+    [DISPERSION_CURVE] = {"curve", "a monotone cubic through pairs of a wavelength in nm and its n"},
+    [DISPERSION_SELLMEIER_FROM] = {"sellmeier-from", "n^2 = 1 + a0 + sum of B L^2 / (L^2 - C), L in um, C in um^2"},
+    [DISPERSION_GAS_FROM] = {"gas-from", "n - 1 = a0 + sum of B / (C - L^-2), L in um, B and C in um^-2"},
+    [DISPERSION_TWO_RESONANCES] = {"two-resonances", "n^2 = a0 + two of a L^p / (L^2 - b^q) + sum of a L^p, L in um"},
+    [DISPERSION_HERZBERGER] = {"herzberger",
+                               "n = A + B M + C M^2 + D L^2 + E L^4 + F L^6, M = 1 / (L^2 - 0.028), L in um"},
+    [DISPERSION_RETRO] = {"retro", "(n^2 - 1) / (n^2 + 2) = a0 + a1 L^2 / (L^2 - a2) + a3 L^2, L in um"},
+    [DISPERSION_EXOTIC] = {"exotic", "n^2 = a0 + a1 / (L^2 - a2) + a3 (L - a4) / ((L - a4)^2 + a5), L in um"},
 };
 
 const char *dispersion_name(dispersion_kind kind)
@@ -28,20 +38,22 @@ const char *dispersion_formula(dispersion_kind kind)
     return kinds[kind].formula;
 }
 
-/* x^p for integer p, by multiplication: libm's pow may differ in the last place between platforms. */
-static double whole_power(double x, double p)
+/* x^p: libm's pow may differ in the last place between platforms; an integer p is exact, by multiplication. x > 0. */
+static double power(double x, double p)
 {
     double result = 1.0;
+    if (p != floor(p))
+        return elementary_pow(x, p);
     for (int left = (int)fabs(p); left > 0; left--)
         result *= x;
     return p < 0.0 ? 1.0 / result : result;
 }
 
 /* Sellmeier, Ann. Phys. 219, 272 (1871), in the form of glass catalogues. */
-static double sellmeier_squared(const dispersion *law, double L2, bool lengths)
+static double sellmeier_squared(const dispersion *law, double L2, bool lengths, double from)
 {
-    double n2 = 1.0;
-    for (int i = 0; i + 1 < law->count; i += 2) {
+    double n2 = 1.0 + from;
+    for (int i = law->count % 2; i + 1 < law->count; i += 2) {
         const double B = law->coefficient[i], C = law->coefficient[i + 1];
         n2 += B * L2 / (L2 - (lengths ? C * C : C));
     }
@@ -52,7 +64,7 @@ static double power_sum(const dispersion *law, double L)
 {
     double sum = law->coefficient[0];
     for (int i = 1; i + 1 < law->count; i += 2)
-        sum += law->coefficient[i] * whole_power(L, law->coefficient[i + 1]);
+        sum += law->coefficient[i] * power(L, law->coefficient[i + 1]);
     return sum;
 }
 
@@ -65,12 +77,44 @@ static double cauchy(const dispersion *law, double L2)
     return n;
 }
 
-static double gas(const dispersion *law, double L2)
+static double gas(const dispersion *law, double L2, double from)
 {
-    double less_one = 0.0;
-    for (int i = 0; i + 1 < law->count; i += 2)
+    double less_one = from;
+    for (int i = law->count % 2; i + 1 < law->count; i += 2)
         less_one += law->coefficient[i] / (law->coefficient[i + 1] - 1.0 / L2);
     return 1.0 + less_one;
+}
+
+/* Formulas 4, 7, 8 and 9 of M. N. Polyanskiy, "Refractiveindex.info database of optical constants", Sci. Data 11, 94
+ * (2024); a glass catalogue's formulas are special cases (scene/assets/optical_files.c). */
+static double two_resonances(const dispersion *law, double L)
+{
+    const double *a = law->coefficient;
+    double n2 = a[0];
+    for (int i = 1; i + 3 < law->count && i < 9; i += 4)
+        if (a[i] != 0.0)
+            n2 += a[i] * power(L, a[i + 1]) / (L * L - (a[i + 2] != 0.0 ? power(a[i + 2], a[i + 3]) : 0.0));
+    for (int i = 9; i + 1 < law->count; i += 2)
+        n2 += a[i] * power(L, a[i + 1]);
+    return n2;
+}
+
+static double herzberger(const double *a, double L2)
+{
+    const double M = 1.0 / (L2 - 0.028);
+    return a[0] + a[1] * M + a[2] * M * M + a[3] * L2 + a[4] * L2 * L2 + a[5] * L2 * L2 * L2;
+}
+
+static double retro_squared(const double *a, double L2)
+{
+    const double q = a[0] + a[1] * L2 / (L2 - a[2]) + a[3] * L2;
+    return (1.0 + 2.0 * q) / (1.0 - q);
+}
+
+static double exotic_squared(const double *a, double L)
+{
+    const double off = L - a[4];
+    return a[0] + a[1] / (L * L - a[2]) + a[3] * off / (off * off + a[5]);
 }
 
 static double table(const dispersion *law, double lambda_nm)
@@ -91,13 +135,20 @@ double dispersion_index(const dispersion *law, double lambda_nm)
     const double L = lambda_nm / 1000.0, L2 = L * L;
     switch (law->kind) {
     case DISPERSION_CONSTANT: return law->coefficient[0];
-    case DISPERSION_SELLMEIER: return sqrt(sellmeier_squared(law, L2, false));
-    case DISPERSION_SELLMEIER_LENGTHS: return sqrt(sellmeier_squared(law, L2, true));
+    case DISPERSION_SELLMEIER: return sqrt(sellmeier_squared(law, L2, false, 0.0));
+    case DISPERSION_SELLMEIER_FROM: return sqrt(sellmeier_squared(law, L2, false, law->coefficient[0]));
+    case DISPERSION_SELLMEIER_LENGTHS: return sqrt(sellmeier_squared(law, L2, true, 0.0));
     case DISPERSION_POLYNOMIAL: return sqrt(power_sum(law, L));
     case DISPERSION_CAUCHY_POWERS: return power_sum(law, L);
     case DISPERSION_CAUCHY: return cauchy(law, L2);
-    case DISPERSION_GAS: return gas(law, L2);
+    case DISPERSION_GAS: return gas(law, L2, 0.0);
+    case DISPERSION_GAS_FROM: return gas(law, L2, law->coefficient[0]);
     case DISPERSION_TABLE: return table(law, lambda_nm);
+    case DISPERSION_CURVE: return curve_at(law->coefficient, (size_t)law->count / 2, lambda_nm);
+    case DISPERSION_TWO_RESONANCES: return sqrt(two_resonances(law, L));
+    case DISPERSION_HERZBERGER: return herzberger(law->coefficient, L2);
+    case DISPERSION_RETRO: return sqrt(retro_squared(law->coefficient, L2));
+    case DISPERSION_EXOTIC: return sqrt(exotic_squared(law->coefficient, L));
     }
     return 1.0;
 }
@@ -106,7 +157,7 @@ bool dispersion_covers(const dispersion *law, double low_nm, double high_nm)
 {
     if (law->low_nm != 0.0 || law->high_nm != 0.0)
         return law->low_nm <= low_nm && high_nm <= law->high_nm;
-    return law->kind != DISPERSION_TABLE ||
+    return (law->kind != DISPERSION_TABLE && law->kind != DISPERSION_CURVE) ||
            (law->coefficient[0] <= low_nm && high_nm <= law->coefficient[law->count - 2]);
 }
 
@@ -123,6 +174,7 @@ double dispersion_abbe_number(const dispersion *law)
 /* Real media have an index in this range at visible wavelengths; another one is a mistake in the coefficients. */
 static const double index_low = 0.1, index_high = 100.0;
 
+#define TABLE_REMEDY "give pairs of a wavelength in nm and an index from 0.1 to 100, by ascending wavelength"
 /* The valid numbers of coefficients: from `first` in steps of `step`, up to `most`. */
 static const struct {
     const char *remedy;
@@ -135,8 +187,15 @@ static const struct {
     [DISPERSION_CAUCHY_POWERS] = {"give a0, then pairs of a coefficient and its power", 1, 2, DISPERSION_TERMS_MAX},
     [DISPERSION_CAUCHY] = {"give A, then B in um^2, C in um^4 and so on", 1, 1, DISPERSION_TERMS_MAX},
     [DISPERSION_GAS] = {"give pairs B C, both in um^-2", 2, 2, DISPERSION_TERMS_MAX},
-    [DISPERSION_TABLE] = {"give pairs of a wavelength in nm and an index from 0.1 to 100, by ascending wavelength", 2,
-                          2, DISPERSION_TERMS_MAX},
+    [DISPERSION_TABLE] = {TABLE_REMEDY, 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_CURVE] = {TABLE_REMEDY, 2, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_SELLMEIER_FROM] = {"give a0, then pairs B C, with C in um^2", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_GAS_FROM] = {"give a0, then pairs B C, both in um^-2", 1, 2, DISPERSION_TERMS_MAX},
+    [DISPERSION_TWO_RESONANCES] = {"give 9 numbers, then pairs of a coefficient and its power", 9, 2,
+                                   DISPERSION_TERMS_MAX},
+    [DISPERSION_HERZBERGER] = {"give 6 numbers", 6, 1, 6},
+    [DISPERSION_RETRO] = {"give 4 numbers", 4, 1, 4},
+    [DISPERSION_EXOTIC] = {"give 6 numbers", 6, 1, 6},
 };
 
 static const char *remedy_for(dispersion_kind kind)
@@ -175,10 +234,10 @@ static status check_numbers(const dispersion *law, diagnostic *why)
 static status check_powers(const dispersion *law, diagnostic *why)
 {
     char remedy[64];
-    snprintf(remedy, sizeof remedy, "use an integer power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
+    snprintf(remedy, sizeof remedy, "use a power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
     for (int i = 2; i < law->count; i += 2) {
         const double p = law->coefficient[i];
-        if (p != floor(p) || fabs(p) > DISPERSION_POWER_MAX)
+        if (fabs(p) > DISPERSION_POWER_MAX)
             return diagnose(why, STATUS_BAD_INPUT, remedy,
                             "the exponent %g of the wavelength is not valid in a dispersion law", p);
     }
@@ -207,10 +266,10 @@ static status check_table(const dispersion *law, diagnostic *why)
 /* A resonance, where the index is infinite, could fall between the samples of the visible range. */
 static status check_resonances(const dispersion *law, diagnostic *why)
 {
-    for (int i = 1; i < law->count; i += 2) {
+    for (int i = 1 + law->count % 2; i < law->count; i += 2) {
         const double C = law->coefficient[i];
         double lambda_nm = 0.0;
-        if (law->kind == DISPERSION_SELLMEIER)
+        if (law->kind == DISPERSION_SELLMEIER || law->kind == DISPERSION_SELLMEIER_FROM)
             lambda_nm = 1000.0 * sqrt(C > 0.0 ? C : 0.0);
         else if (law->kind == DISPERSION_SELLMEIER_LENGTHS)
             lambda_nm = 1000.0 * fabs(C);
@@ -224,19 +283,19 @@ static status check_resonances(const dispersion *law, diagnostic *why)
     return STATUS_OK;
 }
 
-static status check_kind(const dispersion *law, diagnostic *why)
+status dispersion_check_numbers(const dispersion *law, diagnostic *why)
 {
-    switch (law->kind) {
-    case DISPERSION_SELLMEIER:
-    case DISPERSION_SELLMEIER_LENGTHS:
-    case DISPERSION_GAS: return check_resonances(law, why);
-    case DISPERSION_POLYNOMIAL:
-    case DISPERSION_CAUCHY_POWERS: return check_powers(law, why);
-    case DISPERSION_TABLE: return check_table(law, why);
-    case DISPERSION_CONSTANT:
-    case DISPERSION_CAUCHY: break;
-    }
-    return STATUS_OK;
+    TRY(check_numbers(law, why));
+    if (law->kind == DISPERSION_POLYNOMIAL || law->kind == DISPERSION_CAUCHY_POWERS ||
+        law->kind == DISPERSION_TWO_RESONANCES)
+        return check_powers(law, why);
+    return law->kind == DISPERSION_TABLE || law->kind == DISPERSION_CURVE ? check_table(law, why) : STATUS_OK;
+}
+
+static bool has_resonances(dispersion_kind kind)
+{
+    return kind == DISPERSION_SELLMEIER || kind == DISPERSION_SELLMEIER_LENGTHS || kind == DISPERSION_GAS ||
+           kind == DISPERSION_SELLMEIER_FROM || kind == DISPERSION_GAS_FROM;
 }
 
 static status check_visible(const dispersion *law, diagnostic *why)
@@ -258,7 +317,8 @@ static status check_visible(const dispersion *law, diagnostic *why)
 
 status dispersion_check(const dispersion *law, diagnostic *why)
 {
-    TRY(check_numbers(law, why));
-    TRY(check_kind(law, why));
+    TRY(dispersion_check_numbers(law, why));
+    if (has_resonances(law->kind))
+        TRY(check_resonances(law, why));
     return check_visible(law, why);
 }

@@ -24,14 +24,21 @@ typedef enum dispersion_kind {
     DISPERSION_CONSTANT,          /* n = a; a */
     DISPERSION_SELLMEIER,         /* n^2 = 1 + sum B L^2 / (L^2 - C), C in um^2; B C B C ... */
     DISPERSION_SELLMEIER_LENGTHS, /* n^2 = 1 + sum B L^2 / (L^2 - C^2), C in um; B C B C ... */
-    DISPERSION_POLYNOMIAL,        /* n^2 = a0 + sum a L^p, p integer; a0 a p a p ... */
-    DISPERSION_CAUCHY_POWERS,     /* n = a0 + sum a L^p, p integer; a0 a p a p ... */
+    DISPERSION_POLYNOMIAL,        /* n^2 = a0 + sum a L^p; a0 a p a p ... */
+    DISPERSION_CAUCHY_POWERS,     /* n = a0 + sum a L^p; a0 a p a p ... */
     DISPERSION_CAUCHY,            /* n = A + B / L^2 + C / L^4 + ...; A B C ... */
     DISPERSION_GAS,               /* n - 1 = sum B / (C - L^-2), both in um^-2; B C B C ... */
-    DISPERSION_TABLE              /* linear, constant beyond the ends; lambda_nm n lambda_nm n ... */
+    DISPERSION_TABLE,             /* linear, constant beyond the ends; lambda_nm n lambda_nm n ... */
+    DISPERSION_CURVE,             /* the same by a monotone cubic, curve.h */
+    DISPERSION_SELLMEIER_FROM,    /* n^2 = 1 + a0 + sum B L^2 / (L^2 - C), C in um^2; a0 B C B C ... */
+    DISPERSION_GAS_FROM,          /* n - 1 = a0 + sum B / (C - L^-2), both in um^-2; a0 B C B C ... */
+    DISPERSION_TWO_RESONANCES,    /* n^2 = a0 + two of a L^p / (L^2 - b^q) + sum a L^p; a0 a p b q a p b q a p ... */
+    DISPERSION_HERZBERGER,        /* n = A + B M + C M^2 + D L^2 + E L^4 + F L^6, M = 1 / (L^2 - 0.028); A B C ... */
+    DISPERSION_RETRO,             /* (n^2 - 1) / (n^2 + 2) = a0 + a1 L^2 / (L^2 - a2) + a3 L^2; a0 a1 a2 a3 */
+    DISPERSION_EXOTIC             /* n^2 = a0 + a1 / (L^2 - a2) + a3 (L - a4) / ((L - a4)^2 + a5); a0 ... a5 */
 } dispersion_kind;
 
-enum { DISPERSION_KIND_COUNT = DISPERSION_TABLE + 1, DISPERSION_TERMS_MAX = 32, DISPERSION_POWER_MAX = 16 };
+enum { DISPERSION_KIND_COUNT = DISPERSION_EXOTIC + 1, DISPERSION_TERMS_MAX = 32, DISPERSION_POWER_MAX = 16 };
 
 typedef struct dispersion {
     dispersion_kind kind;
@@ -47,9 +54,12 @@ const char *dispersion_formula(dispersion_kind kind);
 /* The index at a wavelength above 0, also outside the range of the measurement. Identical bits on every platform. */
 double dispersion_index(const dispersion *law, double lambda_nm);
 
-/* Checks a law: the number of coefficients for its kind, all finite, powers integers, a table ascending, no resonance
+/* Checks a law: the number of coefficients for its kind, all finite, powers at most 16, a table ascending, no resonance
  * in the visible, and an index from 0.1 to 100 there at each integer nanometre. STATUS_BAD_INPUT otherwise. */
 status dispersion_check(const dispersion *law, diagnostic *why);
+/* The first part of it, what does not depend on the wavelengths: the number of coefficients, and that they, the powers
+ * and the range are valid. */
+status dispersion_check_numbers(const dispersion *law, diagnostic *why);
 
 /* Whether the law was measured over all of low_nm..high_nm. If no range is stated, a table covers its wavelengths and a
  * formula everything. */

@@ -128,7 +128,7 @@ static json_t *first_coefficients(const char *value)
     double ior = 1;
     json_t *laws = json_object();
     number_parse_real(value, &ior);
-    for (int law = MEDIUM_IOR + 1; law < MEDIUM_CATALOGUE; law++) {
+    for (int law = MEDIUM_IOR + 1; law < MEDIUM_DATA; law++) {
         const number_list first = medium_first_coefficients(law, ior);
         json_t *list = json_array();
         for (int64_t i = 0; i < first.count; i++)
@@ -233,6 +233,7 @@ static const char *const group_titles[PARAM_GROUP_COUNT] = {
     [PARAM_BACKGROUND] = "Background",
     [PARAM_MESH] = "Meshes, by name",
     [PARAM_TEXTURE] = "Textures, by name",
+    [PARAM_DATA] = "Optical data, by name",
     [PARAM_LIGHT] = "Lights, by name",
     [PARAM_BEAM] = "Beams, by name",
     [PARAM_MATERIAL] = "Materials, by name; or by a solid's name, for that solid only",

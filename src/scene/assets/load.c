@@ -6,6 +6,7 @@
 #include "geometry/shapes/shape.h"
 #include "import/mesh_wire.h"
 #include "scene/assets/mesh_file.h"
+#include "scene/assets/optical_files.h"
 #include "scene/assets/slime.h"
 #include "scene/model/check.h"
 #include "scene/model/face_materials.h"
@@ -307,6 +308,18 @@ static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
     return code == STATUS_OK ? code : scene_file_error(s, t->name, t->path_line, t->path_column, &bad, code, why);
 }
 
+static status load_data(const scene *s, data_entry *d, diagnostic *why)
+{
+    char *path = scene_file_path(s, d->path);
+    if (!path)
+        return out_of_memory(why);
+    diagnostic bad = {.what = ""};
+    const status code = optical_file_read(
+        path, s->limits.root, &(optical_file_choice){d->glass, d->column, d->scale}, &d->data, &bad);
+    free(path);
+    return code == STATUS_OK ? code : scene_file_error(s, d->name, d->path_line, d->path_column, &bad, code, why);
+}
+
 static bool values_equal(const param *row, const char *a, const char *b)
 {
     char *x = param_value_text(row, -1, a + row->offset), *y = param_value_text(row, -1, b + row->offset);
@@ -378,13 +391,18 @@ static status generate_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     return make_mesh(m, why);
 }
 
-/* Loads the background image and the textures. */
+/* Loads the background image, the textures and the optical data. */
 static status load_textures(scene *s, diagnostic *why)
 {
     TRY(load_sky(s, why));
     for (size_t i = 0; i < s->texture_count; i++)
         if (!s->textures[i].data)
             TRY(load_texture(s, &s->textures[i], why));
+    for (size_t i = 0; i < s->data_count; i++)
+        if (!s->data[i].data)
+            TRY(load_data(s, &s->data[i], why));
+    if (s->data_count > 0)
+        scene_follow_data(s);
     return STATUS_OK;
 }
 

@@ -6,20 +6,22 @@
  *   background: {PARAMETER: VALUE, ...}
  *   meshes: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   textures: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   data: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   materials: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   beams: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
- * An image sets the background's kind to image. Switches are on or off, also written yes or no, true or false. SHAPE is
- * the word of a rule in geometry/shapes/. The parameters are the rows of the table (scene/model/params.h); a solid may
- * also have those of a material. Vectors and colours are lists: [0, 1, 2]. The file's order is kept. Sections and
- * objects may be empty. scene_read (shared_read.c) opens the file. */
+ * A medium may also be a map of data, {file: PATH, ...}. An image sets the background's kind to image. Switches are on
+ * or off, also written yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the
+ * rows of the table (scene/model/params.h); a solid may also have those of a material. Vectors and colours are lists:
+ * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. scene_read (shared_read.c) opens the file. */
 #include "scene/file/document.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/params_value.h"
+#include "scene/model/place/new_objects.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
@@ -33,6 +35,10 @@ typedef struct scene_reader {
 } scene_reader;
 
 /* --- entries: rows of the parameter table --- */
+
+static status read_check_keys(const scene_reader *r, param_group group, const node *map);
+static void store_locations(const scene_reader *r, param_group group, size_t index, const node *map);
+static status read_entries(const scene_reader *r, const char *name, param_group group, size_t index, const node *map);
 
 /* Returns code; on failure, adds the node's location to a diagnostic from a function that does not know the file. */
 static status read_located(const scene_reader *r, const node *at, status code)
@@ -92,6 +98,25 @@ static status read_value(const scene_reader *r, const char *path, const param_pl
     return code;
 }
 
+/* Adds data for a medium that is a map, as {file: N-BK7.yml}, and sets the medium to them. */
+static status read_medium_map(const scene_reader *r, const char *owner, const param_place *at, const node *map)
+{
+    object_name name;
+    const node *file = node_get(map, "file");
+    TRY(read_check_keys(r, PARAM_DATA, map));
+    if (!file || file->kind != NODE_SCALAR || !file->text[0])
+        return node_error(r->file, map, r->why, "write {file: NAME}, or the name of a medium (cuvette media)",
+                          "%.80s.medium is a map without a file", owner);
+    TRY(read_located(r, file, new_data(r->scene, file->text, name, r->why)));
+    const size_t index = r->scene->data_count - 1;
+    TRY(read_entries(r, name, PARAM_DATA, index, map));
+    store_locations(r, PARAM_DATA, index, map);
+    param_place of = *at;
+    TRY(param_place_set(r->scene, &of, owner, "data", r->why));
+    of.row = param_find(PARAM_MATERIAL, "medium_data");
+    return param_place_set(r->scene, &of, owner, name, r->why);
+}
+
 /* Sets the entries of an object's map that are rows of its group, and skips others; name is the path's first word. */
 static status read_entries(const scene_reader *r, const char *name, param_group group, size_t index, const node *map)
 {
@@ -105,7 +130,9 @@ static status read_entries(const scene_reader *r, const char *name, param_group 
         snprintf(path, sizeof path, "%s.%s", name, key);
         if (group == PARAM_SOLID && !solid_has(&r->scene->solids[index], at.row))
             TRY(read_located(r, map->keys[i], param_place_find(r->scene, path, &at, r->why)));
-        TRY(read_value(r, path, &at, map->items[i]));
+        TRY(at.row->group == PARAM_MATERIAL && map->items[i]->kind == NODE_MAP && strcmp(key, "medium") == 0
+                ? read_medium_map(r, name, &at, map->items[i])
+                : read_value(r, path, &at, map->items[i]));
     }
     return STATUS_OK;
 }
@@ -219,6 +246,9 @@ static void store_locations(const scene_reader *r, param_group group, size_t ind
     } else if (group == PARAM_TEXTURE) {
         texture_entry *t = &r->scene->textures[index];
         store_location(file, &t->path_line, &t->path_column);
+    } else if (group == PARAM_DATA) {
+        data_entry *d = &r->scene->data[index];
+        store_location(file, &d->path_line, &d->path_column);
     }
 }
 
@@ -301,6 +331,7 @@ static status read_sections(const scene_reader *r)
         {"title", read_title, PARAM_GROUP_COUNT},    {"render", read_settings, PARAM_RENDER},
         {"camera", read_camera, PARAM_CAMERA},       {"background", read_settings, PARAM_BACKGROUND},
         {"meshes", read_objects, PARAM_MESH},        {"textures", read_objects, PARAM_TEXTURE},
+        {"data", read_objects, PARAM_DATA},
         {"materials", read_objects, PARAM_MATERIAL}, {"lights", read_objects, PARAM_LIGHT},
         {"beams", read_objects, PARAM_BEAM},         {"solids", read_objects, PARAM_SOLID},
     };

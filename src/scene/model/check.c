@@ -29,7 +29,7 @@ static status name_taken(const char *name, diagnostic *why)
 {
     return diagnose(
         why, STATUS_BAD_INPUT,
-        "meshes, textures, lights, beams, materials and solids need different names, because paths use them",
+        "meshes, textures, data, lights, beams, materials and solids need different names, because paths use them",
         "the name '%s' is already in use", name);
 }
 
@@ -186,6 +186,14 @@ static status check_texture(const texture_entry *t, diagnostic *why)
     return STATUS_OK;
 }
 
+static status check_data(const data_entry *d, diagnostic *why)
+{
+    if (!d->path[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set a file, such as 'file: N-BK7.yml'", "%.80s: the data have no file",
+                        d->name);
+    return STATUS_OK;
+}
+
 /* Reports that the texture or mesh to which the solid refers does not exist. */
 static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
 {
@@ -257,6 +265,8 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
+    if (owner->surface.medium_data[0] && object_find(s, PARAM_DATA, owner->surface.medium_data) < 0)
+        return unknown(s, PARAM_DATA, owner->name, owner->surface.medium_data, why);
     if (owner->points[0])
         TRY(check_points(s, owner, why));
     if (!shape_of(&owner->shape)->triangles)
@@ -410,6 +420,8 @@ status check_limits(const scene *s, diagnostic *why)
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 64 meshes and 64 textures", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
+    if (s->data_count > SCENE_DATA_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 files of data", "more than 64 files of data");
     if (s->material_count > SCENE_MATERIALS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 256 materials", "more than 256 materials");
     return STATUS_OK;
@@ -432,6 +444,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_BACKGROUND: return check_background(s, why);
     case PARAM_MESH: return check_mesh(&s->meshes[index], why);
     case PARAM_TEXTURE: return check_texture(&s->textures[index], why);
+    case PARAM_DATA: return check_data(&s->data[index], why);
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
     case PARAM_BEAM: return check_beam(&s->beams[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "base/vec3.h"
+#include "optics/optical_data.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A list of numbers, stored by value. */
@@ -48,6 +50,9 @@ typedef struct material {
     double retardance_deg, birefringence; /* of a retarder: fixed, and along the path */
     int64_t medium;                       /* see scene/model/medium.h */
     number_list coefficients;             /* coefficients of the medium's dispersion law */
+    char medium_data[SCENE_NAME_MAX + 1]; /* data of the index, if medium is MEDIUM_DATA; "" for none */
+    const optical_data *index_data;       /* that of medium_data, borrowed from the scene's entry; NULL until loaded */
+    bool index_in_air;                    /* that index is relative to air */
     vec3 absorb_per_m;                    /* absorption coefficient of the Beer-Lambert law, by channel */
     number_list
         absorb_spectrum;  /* absorption by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */

@@ -9,25 +9,44 @@
 #include <string.h>
 
 #define NAME(name) name,
-const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
+const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", "data", MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
 const char *const surrounding_words[] = {"ior", MEDIA_NAMES(NAME) NULL};
 
 static index_law law_of_catalogue(int64_t at)
 {
     const medium *m = media_at((size_t)at);
-    return (index_law){m->law, m->relative_to_air};
+    return (index_law){.law = m->law, .relative_to_air = m->relative_to_air};
 }
 
 /* A medium of the catalogue, or a metal. */
 static index_law law_of_medium(int64_t word)
 {
     return word < MEDIUM_METAL ? law_of_catalogue(word - MEDIUM_CATALOGUE)
-                               : (index_law){metals_at((size_t)(word - MEDIUM_METAL))->n, false};
+                               : (index_law){.law = metals_at((size_t)(word - MEDIUM_METAL))->n};
 }
 
 static index_law law_of_ior(double ior)
 {
-    return (index_law){{.kind = DISPERSION_CONSTANT, .count = 1, .coefficient = {ior}}, false};
+    return (index_law){.law = {.kind = DISPERSION_CONSTANT, .count = 1, .coefficient = {ior}}};
+}
+
+/* Data that are not loaded yet have the constant index. */
+static status law_of_data(const material *m, const char *label, index_law *out, diagnostic *why)
+{
+    if (!m->medium_data[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set medium_data to the name of one of the scene's data",
+                        "%.80s: medium is data, but medium_data is not set", label);
+    *out = law_of_ior(m->ior);
+    if (!m->index_data)
+        return STATUS_OK;
+    if (!optical_data_has_first(m->index_data))
+        return diagnose(why, STATUS_BAD_INPUT, "choose a file with n", "%.80s: the data %.80s have no refractive index",
+                        label, m->medium_data);
+    out->data = m->index_data;
+    out->relative_to_air = m->index_in_air;
+    out->law = (dispersion){.kind = DISPERSION_CURVE};
+    optical_data_range(m->index_data, &out->law.low_nm, &out->law.high_nm);
+    return STATUS_OK;
 }
 
 status material_index_law(const material *m, const char *label, index_law *out, diagnostic *why)
@@ -35,12 +54,14 @@ status material_index_law(const material *m, const char *label, index_law *out, 
     static const dispersion_kind kinds[] = {[MEDIUM_IOR] = DISPERSION_CONSTANT,
                                             [MEDIUM_SELLMEIER] = DISPERSION_SELLMEIER,
                                             [MEDIUM_CAUCHY] = DISPERSION_CAUCHY,
-                                            [MEDIUM_TABLE] = DISPERSION_TABLE};
+                                            [MEDIUM_TABLE] = DISPERSION_CURVE};
     if (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE) {
         *out = m->medium == MEDIUM_IOR ? law_of_ior(m->ior) : law_of_medium(m->medium);
         return STATUS_OK;
     }
-    *out = (index_law){{.kind = kinds[m->medium], .count = (int)m->coefficients.count}, false};
+    if (m->medium == MEDIUM_DATA)
+        return law_of_data(m, label, out, why);
+    *out = (index_law){.law = {.kind = kinds[m->medium], .count = (int)m->coefficients.count}};
     memcpy(out->law.coefficient, m->coefficients.value, (size_t)m->coefficients.count * sizeof(double));
     diagnostic bad = {.what = ""};
     if (m->coefficients.count == 0) {
@@ -93,12 +114,14 @@ index_law surrounding_index_law(const background *b)
 
 double index_law_at(const index_law *law, double lambda_nm)
 {
-    const double n = dispersion_index(&law->law, lambda_nm);
+    const double n = law->data ? optical_data_at(law->data, lambda_nm) : dispersion_index(&law->law, lambda_nm);
     return law->relative_to_air ? n * medium_index(media_at(0), lambda_nm) : n;
 }
 
 static bool index_laws_equal(const index_law *a, const index_law *b)
 {
+    if (a->data || b->data)
+        return a->data == b->data && a->relative_to_air == b->relative_to_air;
     if (a->law.kind != b->law.kind || a->law.count != b->law.count || a->relative_to_air != b->relative_to_air)
         return false;
     for (int i = 0; i < a->law.count; i++)
@@ -136,10 +159,15 @@ const metal *material_metal(const material *m)
     return m->medium >= MEDIUM_METAL ? metals_at((size_t)(m->medium - MEDIUM_METAL)) : NULL;
 }
 
+static bool has_k(const material *m)
+{
+    return m->medium == MEDIUM_DATA && m->index_data && optical_data_has_k(m->index_data);
+}
+
 /* An opaque material whose surface is a metal's: by its medium, or by its extinction. */
 static bool material_is_conductor(const material *m)
 {
-    return m->transparency == 0.0 && (material_metal(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
+    return m->transparency == 0.0 && (material_metal(m) || has_k(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
 }
 
 bool material_has_film(const material *m)
@@ -205,7 +233,7 @@ status material_crystal_check(const material *m, const char *label, diagnostic *
 double material_extinction_index(const material *m, double lambda_nm)
 {
     const metal *of = material_metal(m);
-    return of ? metal_index(of, lambda_nm).im : m->medium == MEDIUM_IOR ? m->extinction : 0.0;
+    return of ? metal_index(of, lambda_nm).im : has_k(m) ? optical_data_k(m->index_data, lambda_nm) : m->medium == MEDIUM_IOR ? m->extinction : 0.0;
 }
 
 const char *material_medium_name(const material *m)
@@ -239,11 +267,19 @@ static double between_channels(vec3 a, double lambda_nm)
     return interpolate(points, 6, lambda_nm);
 }
 
+/* Absorption coefficient of a transparent medium with k, 4 pi k / lambda, 1/m; Born and Wolf, 7th ed., 14.1 (20). */
+static double absorption_of_k(const material *m, double lambda_nm)
+{
+    const double four_pi = 12.566370614359172954;
+    return m->transparency > 0.0 && has_k(m) ? four_pi * optical_data_k(m->index_data, lambda_nm) / (lambda_nm * 1e-9) : 0.0;
+}
+
 double material_absorption_at(const material *m, double lambda_nm)
 {
-    if (m->absorb_spectrum.count > 0)
-        return interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm);
-    return between_channels(m->absorb_per_m, lambda_nm);
+    const double own = m->absorb_spectrum.count > 0
+                           ? interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm)
+                           : between_channels(m->absorb_per_m, lambda_nm);
+    return own + absorption_of_k(m, lambda_nm);
 }
 
 double surrounding_absorption_at(const background *b, double lambda_nm)
@@ -254,7 +290,7 @@ double surrounding_absorption_at(const background *b, double lambda_nm)
 vec3 material_absorption(const material *m)
 {
     const double channel_nm[] = CHANNEL_LAMBDA_NM;
-    if (m->absorb_spectrum.count == 0)
+    if (m->absorb_spectrum.count == 0 && !has_k(m))
         return m->absorb_per_m;
     return vec3_make(material_absorption_at(m, channel_nm[0]), material_absorption_at(m, channel_nm[1]),
                      material_absorption_at(m, channel_nm[2]));
@@ -275,7 +311,7 @@ bool material_absorbs(const material *m)
     for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2)
         if (m->absorb_spectrum.value[i] > 0.0)
             return true;
-    return m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m);
+    return (m->transparency > 0.0 && has_k(m)) || (m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m));
 }
 
 bool material_tints(const material *m)

@@ -1,5 +1,5 @@
 /* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. A medium is an
- * index into medium_words: `ior` for a constant index, then the laws that need coefficients, then the catalogue, then
+ * index into medium_words: `ior` for a constant index, then the laws that need coefficients, `data`, then the catalogue, then
  * the metals (both optics/media.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
 #pragma once
 
@@ -10,7 +10,7 @@
 #include "scene/model/render_settings.h"
 #include "scene/model/view_settings.h"
 
-enum { MEDIUM_IOR, MEDIUM_SELLMEIER, MEDIUM_CAUCHY, MEDIUM_TABLE, MEDIUM_CATALOGUE };
+enum { MEDIUM_IOR, MEDIUM_SELLMEIER, MEDIUM_CAUCHY, MEDIUM_TABLE, MEDIUM_DATA, MEDIUM_CATALOGUE };
 enum { MEDIUM_METAL = MEDIUM_CATALOGUE + MEDIA_COUNT };
 extern const char *const medium_words[];
 /* For the surroundings: `ior`, then the catalogue. */
@@ -23,6 +23,7 @@ enum { DROPS_FIRST = 1 };
 typedef struct index_law {
     dispersion law;
     bool relative_to_air;
+    const optical_data *data; /* replaces the law, whose range is theirs; borrowed; NULL: none */
 } index_law;
 
 /* STATUS_BAD_INPUT if the coefficients are invalid; label is the name of the material in the message. For a metal, *out

@@ -18,8 +18,8 @@ static bool is_reserved(const char *name)
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
         if (strcmp(name, sections[i]) == 0)
             return true;
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++) /* objects of older scenes may be called "beam" */
-        if (g != PARAM_BEAM && strcmp(name, param_group_name((param_group)g)) == 0)
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) /* objects of older scenes may be called "beam" or "data" */
+        if (g != PARAM_BEAM && g != PARAM_DATA && strcmp(name, param_group_name((param_group)g)) == 0)
             return true;
     return false;
 }

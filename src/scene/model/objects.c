@@ -23,6 +23,7 @@ static const group_storage lists[PARAM_GROUP_COUNT] = {
     [PARAM_BACKGROUND] = {.at = offsetof(scene, background)},
     [PARAM_MESH] = {offsetof(scene, meshes), offsetof(scene, mesh_count), sizeof(mesh_entry), 0},
     [PARAM_TEXTURE] = {offsetof(scene, textures), offsetof(scene, texture_count), sizeof(texture_entry), 0},
+    [PARAM_DATA] = {offsetof(scene, data), offsetof(scene, data_count), sizeof(data_entry), 0},
     [PARAM_LIGHT] = {offsetof(scene, lights), offsetof(scene, light_count), sizeof(light), 0},
     [PARAM_BEAM] = {offsetof(scene, beams), offsetof(scene, beam_count), sizeof(beam), 0},
     [PARAM_MATERIAL] = {offsetof(scene, materials), offsetof(scene, material_count), sizeof(named_material),
@@ -30,7 +31,7 @@ static const group_storage lists[PARAM_GROUP_COUNT] = {
     [PARAM_SOLID] = {offsetof(scene, solids), offsetof(scene, solid_count), sizeof(solid), 0},
 };
 
-_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 &&
+_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 && offsetof(data_entry, name) == 0 &&
                    offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(beam, name) == 0 &&
                    offsetof(solid, name) == 0,
                "the name is the first field");
@@ -129,6 +130,8 @@ static void release(param_group group, void *object)
         mesh_entry_unload(object);
     else if (group == PARAM_TEXTURE)
         texture_entry_unload(object);
+    else if (group == PARAM_DATA)
+        data_entry_unload(object);
     each_text(group, object, free_text);
 }
 
@@ -170,6 +173,8 @@ static bool copy_owned(param_group group, void *object)
             mesh_retain(m->data);
     } else if (group == PARAM_TEXTURE && ((const texture_entry *)object)->data) {
         texture_retain(((const texture_entry *)object)->data);
+    } else if (group == PARAM_DATA && ((const data_entry *)object)->data) {
+        optical_data_retain(((const data_entry *)object)->data);
     }
     return each_text(group, object, copy_text);
 }

@@ -292,6 +292,10 @@ static void forget_loaded(scene *s, const param_place *at, param_value value)
         texture_entry *t = &s->textures[at->index];
         texture_entry_unload(t);
         t->path_line = names_file ? 0 : t->path_line;
+    } else if (at->object_group == PARAM_DATA) {
+        data_entry *d = &s->data[at->index];
+        data_entry_unload(d);
+        d->path_line = names_file ? 0 : d->path_line;
     } else if (names_file) {
         image_destroy(s->background.img);
         s->background.img = NULL;
@@ -316,6 +320,8 @@ static void store(scene *s, const param_place *at, param_value value)
     for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
+    if (at->object_group == PARAM_DATA || (row->group == PARAM_MATERIAL && row->type == PARAM_WORD && s->data_count > 0))
+        scene_follow_data(s);
 }
 
 status param_place_set(scene *s, const param_place *at, const char *path, const char *value, diagnostic *why)

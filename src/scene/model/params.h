@@ -1,8 +1,8 @@
 /* The parameter table: every user-settable quantity is declared once, in params_table.c; the keys of scene files,
  * --set, the axes of studies, CSV headers and the manual all follow from it.
  *
- * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
- * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
+ * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture,
+ * data, a light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
  * `vessel.ior`, `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a
  * material's field applies to all solids with that material; setting it by a solid's name applies to that solid only;
  * the last setting wins. Ownership: the table is constant. */
@@ -19,6 +19,7 @@ typedef enum param_group {
     PARAM_BACKGROUND,
     PARAM_MESH,
     PARAM_TEXTURE,
+    PARAM_DATA,
     PARAM_LIGHT,
     PARAM_BEAM,
     PARAM_MATERIAL,

@@ -35,6 +35,7 @@ static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", N
 static const char *const alpha_words[] = {"opaque", "mask", "blend", NULL};
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
+static const char *const reference_words[] = {"air", "vacuum", NULL};
 static const char *const projection_words[] = {"perspective", "orthographic", NULL};
 static const char *const analyser_words[] = {"none", "linear", "circular_left", "circular_right", NULL};
 static const char *const sheet_words[] = {"none", "polariser", "circular_left", "circular_right", "retarder", NULL};
@@ -379,6 +380,19 @@ static const param table[] = {
     CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb",
            "values of a PNG, JPEG or BMP file: sRGB-encoded or linear"),
 
+    {PARAM_DATA, "file", PARAM_PATH, "", 0, 0, false, "",
+     "file of optical data by wavelength: of refractiveindex.info (.yml), a glass catalogue (.agf), or a table of "
+     "numbers (.csv and others); its path is relative to the scene file's folder",
+     NULL, OF(data_entry, path)},
+    {PARAM_DATA, "glass", PARAM_WORD, "", 0, 0, false, "", "glass of a catalogue; empty if it has only one", NULL,
+     OF(data_entry, glass)},
+    {PARAM_DATA, "column", PARAM_WORD, "", 0, 0, false, "",
+     "column of a table: its name in the header, or its number from 2; empty: the second, and a third of k", NULL,
+     OF(data_entry, column)},
+    REAL(PARAM_DATA, data_entry, scale, "", -1e9, 1e9, "1", "factor of the values, such as 0.01 for percent"),
+    CHOICE(PARAM_DATA, data_entry, relative_to, reference_words, "air",
+           "what a refractive index is relative to: air, as in glass catalogues and by refractometers, or vacuum"),
+
     CHOICE(PARAM_LIGHT, light, kind, light_words, "point",
            "point light, spotlight with a hard edge, or spotlight whose intensity falls to zero at the edge, "
            "linear in the cosine of the angle; a disc or a rectangle that emits by Lambert's law on one side; or a "
@@ -479,6 +493,9 @@ static const param table[] = {
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
          "coefficients of the dispersion law at L in um; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ...; "
          "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
+    {PARAM_MATERIAL, "medium_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the refractive index, if medium is data; k makes a transparent medium absorb, and an opaque one a metal",
+     NULL, OF(material, medium_data)},
     REAL(PARAM_MATERIAL, material, extraordinary_ior, "", 0, 5, "0",
          "extraordinary index of a uniaxial crystal, relative to vacuum, at every wavelength, for integrator whitted; "
          "its ordinary index is set by ior or medium; 0: not a crystal"),
@@ -627,8 +644,8 @@ const param *param_at(size_t index)
 
 const char *param_group_name(param_group group)
 {
-    static const char *const names[] = {"render", "camera", "background", "mesh", "texture",
-                                        "light",  "beam",   "material",   "solid"};
+    static const char *const names[] = {"render", "camera", "background", "mesh",     "texture",
+                                        "data",   "light",  "beam",       "material", "solid"};
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 

@@ -183,6 +183,21 @@ const texture_entry *scene_find_texture(const scene *s, const char *name)
     return at < 0 ? NULL : &s->textures[at];
 }
 
+static void follow_data(const scene *s, material *m)
+{
+    const int at = m->medium_data[0] ? object_find(s, PARAM_DATA, m->medium_data) : -1;
+    m->index_data = at < 0 ? NULL : s->data[at].data;
+    m->index_in_air = at >= 0 && s->data[at].relative_to == DATA_IN_AIR;
+}
+
+void scene_follow_data(scene *s)
+{
+    for (size_t i = 0; i < s->material_count; i++)
+        follow_data(s, &s->materials[i].value);
+    for (size_t i = 0; i < s->solid_count; i++)
+        follow_data(s, &s->solids[i].surface);
+}
+
 const light *scene_sun(const scene *s)
 {
     for (size_t i = 0; i < s->light_count; i++)

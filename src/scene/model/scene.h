@@ -1,4 +1,4 @@
-/* A scene: render settings, camera, background, meshes, textures, lights, beams, materials, solids. Every user-settable
+/* A scene: render settings, camera, background, meshes, textures, optical data, lights, beams, materials, solids. Every user-settable
  * field is a row of the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals.
  * Code that only passes scenes to others includes scene/model/open.h, which states ownership; the renderer borrows a
  * scene. */
@@ -21,6 +21,8 @@ struct scene {
     size_t mesh_count;
     texture_entry *textures;
     size_t texture_count;
+    data_entry *data;
+    size_t data_count;
     named_material *materials;
     size_t material_count;
     light *lights;
@@ -30,7 +32,7 @@ struct scene {
     solid *solids;
     size_t solid_count;
     solid *new_solid;   /* with all defaults and without a name; NULL until the first solid is added */
-    name_tally names;   /* of meshes, textures, materials, lights, beams and solids */
+    name_tally names;   /* of meshes, textures, data, materials, lights, beams and solids */
     load_limits limits; /* none by default; set by scene_limit */
 };
 
@@ -46,6 +48,8 @@ const mesh_entry *scene_points_of(const scene *s, const solid *owner);
 /* The solid's shape, with the triangles of its mesh, or its points, if they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
+/* Sets what materials refer to by name: index_data. Called when data are loaded, or a name or an entry changes. */
+void scene_follow_data(scene *s);
 
 /* The first light of kind sun, or NULL. */
 const light *scene_sun(const scene *s);

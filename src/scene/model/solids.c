@@ -96,6 +96,12 @@ void texture_entry_unload(texture_entry *t)
     t->data = NULL;
 }
 
+void data_entry_unload(data_entry *d)
+{
+    optical_data_release(d->data);
+    d->data = NULL;
+}
+
 bool solid_shows_mesh(const solid *owner, const char *mesh_name)
 {
     return shape_of(&owner->shape)->triangles && strcmp(owner->mesh, mesh_name) == 0;

@@ -121,6 +121,19 @@ typedef struct texture_entry {
     const texture *data;                   /* a counted reference; NULL until scene_load */
 } texture_entry;
 
+/* A file of optical data (scene/assets/optical_files.h). */
+typedef struct data_entry {
+    char *name;
+    char *path; /* relative to the scene file */
+    long path_line, path_column;
+    char glass[SCENE_NAME_MAX + 1], column[SCENE_NAME_MAX + 1]; /* "": the only one; the second */
+    double scale;
+    int64_t relative_to;      /* data_reference: of an index */
+    const optical_data *data; /* a counted reference; NULL until scene_load */
+} data_entry;
+typedef enum data_reference { DATA_IN_AIR, DATA_IN_VACUUM } data_reference;
+enum { SCENE_DATA_MAX = 64 };
+
 /* Limits of loading, for scenes from others; copies of a scene have the same limits. */
 typedef struct load_limits {
     char *root;       /* folder of all files that may be read (base/file.h); NULL or "": no restriction */
@@ -130,6 +143,7 @@ typedef struct load_limits {
 /* Releases the loaded data of an entry whose parameters change. */
 void mesh_entry_unload(mesh_entry *m);
 void texture_entry_unload(texture_entry *t);
+void data_entry_unload(data_entry *d);
 
 /* --- slimes --- */
 

@@ -149,7 +149,7 @@ enum {
 
 typedef struct scene_record {
     uint64_t triangles; /* the limit of loading */
-    int64_t image_line, image_column, image, textures, meshes;
+    int64_t image_line, image_column, image, textures, data, meshes;
 } scene_record;
 
 typedef struct texture_record {
@@ -206,6 +206,13 @@ static status put_mesh(pack_writer *to, const scene *s, size_t index, diagnostic
     return put_face_materials(to, m->shading_materials, why);
 }
 
+static status put_data(pack_writer *to, const data_entry *d, diagnostic *why)
+{
+    const texture_record record = {d->path_line, d->path_column, d->data ? DATA_FOLLOWS : DATA_NONE};
+    TRY(pack_put(to, &record, sizeof record, why));
+    return d->data ? optical_data_pack(d->data, to, why) : STATUS_OK;
+}
+
 status package_put_scene(pack_writer *to, const scene *s, const char *text, diagnostic *why)
 {
     const background *sky = &s->background;
@@ -214,6 +221,7 @@ status package_put_scene(pack_writer *to, const scene *s, const char *text, diag
                                  .image_column = sky->image_column,
                                  .image = sky->img ? DATA_FOLLOWS : DATA_NONE,
                                  .textures = (int64_t)s->texture_count,
+                                 .data = (int64_t)s->data_count,
                                  .meshes = (int64_t)s->mesh_count};
     TRY(pack_put_text(to, s->path, why));
     TRY(pack_put_text(to, s->limits.root, why));
@@ -223,6 +231,8 @@ status package_put_scene(pack_writer *to, const scene *s, const char *text, diag
         TRY(image_pack(sky->img, to, why));
     for (size_t i = 0; i < s->texture_count; i++)
         TRY(put_texture(to, s, i, why));
+    for (size_t i = 0; i < s->data_count; i++)
+        TRY(put_data(to, &s->data[i], why));
     for (size_t i = 0; i < s->mesh_count; i++)
         TRY(put_mesh(to, s, i, why));
     return STATUS_OK;
@@ -260,6 +270,17 @@ static status get_texture(pack_reader *from, scene *s, size_t index, diagnostic 
     if (record.data >= DATA_OF_ENTRY && (t->data = s->textures[record.data - DATA_OF_ENTRY].data))
         texture_retain(t->data);
     return STATUS_OK;
+}
+
+static status get_data(pack_reader *from, data_entry *d, diagnostic *why)
+{
+    texture_record record;
+    TRY(pack_get(from, &record, sizeof record, why));
+    if (record.data != DATA_NONE && record.data != DATA_FOLLOWS)
+        return pack_damaged(why, "the number of optical data");
+    d->path_line = record.line;
+    d->path_column = record.column;
+    return record.data == DATA_FOLLOWS ? optical_data_unpack(from, &d->data, why) : STATUS_OK;
 }
 
 static void reference_mesh(mesh_entry *m, const mesh_entry *other)
@@ -322,7 +343,7 @@ static status get_contents(pack_reader *from, scene *s, diagnostic *why)
     scene_record record;
     TRY(pack_get(from, &record, sizeof record, why));
     if (record.image < DATA_NONE || record.image > DATA_FOLLOWS || record.textures != (int64_t)s->texture_count ||
-        record.meshes != (int64_t)s->mesh_count)
+        record.data != (int64_t)s->data_count || record.meshes != (int64_t)s->mesh_count)
         return pack_damaged(why, "the number of its objects");
     s->limits.triangles = record.triangles;
     s->background.image_line = record.image_line;
@@ -331,8 +352,11 @@ static status get_contents(pack_reader *from, scene *s, diagnostic *why)
         TRY(get_sky(from, &s->background, why));
     for (size_t i = 0; i < s->texture_count; i++)
         TRY(get_texture(from, s, i, why));
+    for (size_t i = 0; i < s->data_count; i++)
+        TRY(get_data(from, &s->data[i], why));
     for (size_t i = 0; i < s->mesh_count; i++)
         TRY(get_mesh(from, s, i, why));
+    scene_follow_data(s);
     return STATUS_OK;
 }
 

@@ -74,7 +74,7 @@ static status add_params(meaning *m, const scene *s, bool without_performance, c
 
 status meaning_of_scene(meaning *m, const scene *s, bool without_performance, const param_defaults *first_defaults)
 {
-    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE,  PARAM_LIGHT,
+    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE,  PARAM_DATA, PARAM_LIGHT,
                                          PARAM_BEAM, PARAM_MATERIAL, PARAM_SOLID};
     TRY(add_params(m, s, without_performance, first_defaults));
     TRY(add(m, strdup("the camera's direction"), strdup(s->camera.aimed ? "its target" : "its angles")));
@@ -178,6 +178,9 @@ status identity_hash_files(uint64_t *hash, const scene *s, diagnostic *why)
         hash_array(hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3, sizeof *sky->pixel);
     for (size_t i = 0; i < s->texture_count; i++)
         hash_texture(hash, s->textures[i].data);
+    for (size_t i = 0; i < s->data_count; i++)
+        if (s->data[i].data)
+            *hash = optical_data_hash(s->data[i].data, *hash);
     for (size_t i = 0; i < s->mesh_count; i++) {
         const mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && m->data)

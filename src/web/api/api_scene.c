@@ -35,7 +35,7 @@ static json_t *solid_json(const scene *s, const solid *one)
 
 static json_t *objects_json(const scene *s)
 {
-    static const param_group rest[] = {PARAM_BEAM, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
+    static const param_group rest[] = {PARAM_BEAM, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE, PARAM_DATA};
     json_t *list = json_array();
     int bad = 0;
     for (size_t i = 0; i < s->solid_count; i++)

@@ -234,5 +234,7 @@ status folder_check_scene(const folder *f, const scene *s, diagnostic *why)
     }
     for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++)
         code = check_named(f, s, s->textures[i].name, s->textures[i].path, why);
+    for (size_t i = 0; i < s->data_count && code == STATUS_OK; i++)
+        code = check_named(f, s, s->data[i].name, s->data[i].path, why);
     return code;
 }

@@ -85,6 +85,9 @@ static void unload(scene *s)
             mesh_entry_unload(&s->meshes[i]);
     for (size_t i = 0; i < s->texture_count; i++)
         texture_entry_unload(&s->textures[i]);
+    for (size_t i = 0; i < s->data_count; i++)
+        data_entry_unload(&s->data[i]);
+    scene_follow_data(s);
     image_destroy(s->background.img);
     s->background.img = NULL;
 }
@@ -370,6 +373,12 @@ static void share_loaded(scene *s, const scene *loaded)
             s->textures[i].data = loaded->textures[i].data;
             texture_retain(s->textures[i].data);
         }
+    for (size_t i = 0; i < s->data_count; i++)
+        if (!s->data[i].data && loaded->data[i].data) {
+            s->data[i].data = loaded->data[i].data;
+            optical_data_retain(s->data[i].data);
+        }
+    scene_follow_data(s);
     if (!s->background.img && loaded->background.img)
         s->background.img = image_retain(loaded->background.img);
     scene_retain_meshes(s, loaded);

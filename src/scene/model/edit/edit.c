@@ -188,7 +188,7 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
 
 static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
 {
-    char remedy[200];
+    char remedy[240];
     snprintf(remedy, sizeof remedy, "first give %.80s another %s, or remove %.80s", user, what, user);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is the %s of %.80s", name, what, user);
 }
@@ -216,6 +216,19 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
     return STATUS_OK;
 }
 
+static status remove_data(scene *s, size_t index, diagnostic *why)
+{
+    const data_entry *d = &s->data[index];
+    for (size_t i = 0; i < s->material_count; i++)
+        if (strcmp(s->materials[i].value.medium_data, d->name) == 0)
+            return in_use("data file", d->name, s->materials[i].name, why);
+    for (size_t i = 0; i < s->solid_count; i++)
+        if (strcmp(s->solids[i].surface.medium_data, d->name) == 0)
+            return in_use("data file", d->name, s->solids[i].name, why);
+    object_remove(s, PARAM_DATA, index);
+    return STATUS_OK;
+}
+
 status scene_remove(scene *s, const char *name, diagnostic *why)
 {
     param_place at;
@@ -223,6 +236,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     switch (at.object_group) {
     case PARAM_MESH: return remove_mesh(s, at.index, why);
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
+    case PARAM_DATA: return remove_data(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
     case PARAM_LIGHT:
     case PARAM_BEAM:
@@ -239,7 +253,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     return STATUS_FAILURE;
 }
 
-/* Renames the references of solids and materials to a mesh or texture. */
+/* Renames the references of solids and materials to a mesh, a texture or data. */
 static void follow_name(scene *s, const param_place *at, const char *from, const char *to)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -250,7 +264,12 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
             strcpy(owner->points, to);
         if (at->object_group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
+        if (at->object_group == PARAM_DATA && strcmp(owner->surface.medium_data, from) == 0)
+            strcpy(owner->surface.medium_data, to);
     }
+    for (size_t i = 0; at->object_group == PARAM_DATA && i < s->material_count; i++)
+        if (strcmp(s->materials[i].value.medium_data, from) == 0)
+            strcpy(s->materials[i].value.medium_data, to);
     for (size_t i = 0; at->object_group == PARAM_TEXTURE && i < s->material_count; i++)
         if (strcmp(s->materials[i].value.texture, from) == 0)
             strcpy(s->materials[i].value.texture, to);

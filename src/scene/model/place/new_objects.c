@@ -269,16 +269,27 @@ static void base_of_path(const char *path, const char *otherwise, object_name ba
         strcpy(base, otherwise);
 }
 
-status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why)
+static status new_of_file(scene *s, param_group group, const char *path, const char *wanted, object_name name,
+                          diagnostic *why)
 {
     object_name base;
-    base_of_path(path, "image", base);
+    base_of_path(path, group == PARAM_TEXTURE ? "image" : "measured", base);
     status code = name_for(s, wanted, base, name, why);
-    THEN(code, scene_add(s, PARAM_TEXTURE, name, NULL, why));
+    THEN(code, scene_add(s, group, name, NULL, why));
     char *row = text_format("%s.file", name);
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
     return code;
+}
+
+status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why)
+{
+    return new_of_file(s, PARAM_TEXTURE, path, wanted, name, why);
+}
+
+status new_data(scene *s, const char *path, object_name name, diagnostic *why)
+{
+    return new_of_file(s, PARAM_DATA, path, NULL, name, why);
 }
 
 static void retain_loaded(mesh_entry *m, const mesh_entry *from)
@@ -426,7 +437,8 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
     case PARAM_BEAM: return copy_next_to(s, at.object_group, at.index, name, why);
     case PARAM_MATERIAL:
     case PARAM_MESH:
-    case PARAM_TEXTURE: return copy_object(s, at.object_group, at.index, name, why);
+    case PARAM_TEXTURE:
+    case PARAM_DATA: return copy_object(s, at.object_group, at.index, name, why);
     case PARAM_RENDER:
     case PARAM_CAMERA:
     case PARAM_BACKGROUND:
