@@ -1,18 +1,21 @@
-/* `cuvette media`: the media catalogue as a table, one medium in detail, or JSON. */
+/* `cuvette media`: the media catalogue as a table, one medium or a file of optical data in detail, or JSON. */
 #include "base/number.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "report/json.h"
 #include "report/media_rows.h"
+#include "scene/assets/optical_files.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 typedef struct media_request {
     const char *name; /* NULL: all */
     double at_nm;     /* 0: not given */
+    const char *glass, *column; /* of a file; NULL: not given */
     bool json;
 } media_request;
 
@@ -28,13 +31,15 @@ static status parse_wavelength(const command_option *o, void *context, const cha
 
 static const command_option options[] = {
     {"at", 0, "NM", "also print the index at this wavelength", .store = parse_wavelength},
+    {"glass", 0, "NAME", "glass of a catalogue file", OPTION_FILLS(option_text, media_request, glass)},
+    {"column", 0, "NAME", "column of a table, by name or number", OPTION_FILLS(option_text, media_request, column)},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, media_request, json)},
     {0},
 };
 
 static const command_form form = {
     .options = options,
-    .synopsis = "[NAME]",
+    .synopsis = "[NAME|FILE]",
     .arguments_at = offsetof(media_request, name),
     .argument_limit = 1,
     .excess_remedy = "give one medium, or none for all",
@@ -42,7 +47,8 @@ static const command_form form = {
     .about = "Print the media catalogue: refractive index at the d, F and C lines, Abbe number, wavelength range and "
              "temperature of the measurement, reference medium (air or vacuum) and source; then the metals with n and "
              "k of their complex index, and their reflectance R_d in vacuum. With a name, print all data "
-             "for that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
+             "for that medium: the dispersion formula with its coefficients, and caveats; with a file of optical data "
+             "(.yml of refractiveindex.info, .agf, .csv), what a scene reads of it.\vIndices are as published, "
              "relative to air or to vacuum; with a name the index relative to vacuum is printed as well. An "
              "asterisk marks an index outside the measured range. --at never extrapolates. On a terminal the lines are "
              "wrapped to "
@@ -116,11 +122,31 @@ static status print(const media_request *request, media_choice chosen, diagnosti
     return STATUS_OK;
 }
 
+/* A name with a dot or a slash is a file. */
+static status print_file(const media_request *request, diagnostic *why)
+{
+    const optical_data *d;
+    const optical_file_choice of = {request->glass ? request->glass : "", request->column ? request->column : "", 1.0};
+    TRY(optical_file_read(request->name, NULL, &of, &d, why));
+    status code = STATUS_OK;
+    if (request->json)
+        code = json_print(data_rows_json(request->name, d, request->at_nm), why);
+    else
+        data_rows_details(stdout, request->name, d, request->at_nm, terminal_columns(STDOUT_FILENO));
+    optical_data_release(d);
+    return code;
+}
+
 status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
     media_choice chosen = {NULL, NULL};
     TRY(command_form_read(&form, argc, argv, &request, why));
+    if (request.name && strpbrk(request.name, "./"))
+        return print_file(&request, why);
+    if (request.glass || request.column)
+        return options_wrong("media", NULL, why, "give a file such as schott.agf", "--%s needs a file",
+                             request.glass ? "glass" : "column");
     if (request.name)
         TRY(find(&request, &chosen, why));
     if (chosen.clear)

@@ -50,6 +50,16 @@ void optical_data_range(const optical_data *d, double *low_nm, double *high_nm)
     *high_nm = d->has_law ? d->law.high_nm : of[2 * count - 2];
 }
 
+const dispersion *optical_data_law(const optical_data *d)
+{
+    return d->has_law ? &d->law : NULL;
+}
+
+size_t optical_data_points(const optical_data *d, bool of_k)
+{
+    return d->count[of_k];
+}
+
 double optical_data_at(const optical_data *d, double lambda_nm)
 {
     if (d->has_law)

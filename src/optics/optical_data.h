@@ -33,6 +33,10 @@ void optical_data_range(const optical_data *d, double *low_nm, double *high_nm);
 /* Whether k is there and above 0 somewhere. */
 bool optical_data_has_k(const optical_data *d);
 
+/* The law of n, or NULL; and the number of points of the first curve and of k. */
+const dispersion *optical_data_law(const optical_data *d);
+size_t optical_data_points(const optical_data *d, bool of_k);
+
 /* n, or the quantity; requires optical_data_has_first. */
 double optical_data_at(const optical_data *d, double lambda_nm);
 /* k; 0 if there is none. */

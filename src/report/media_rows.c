@@ -130,14 +130,14 @@ static void print_index(FILE *stream, const medium *m, const char *name, double 
              dispersion_covers(&m->law, lambda_nm, lambda_nm) ? "" : ", extrapolated");
 }
 
-static void print_law(FILE *stream, const medium *m, int columns)
+static void print_law(FILE *stream, const dispersion *law, int columns)
 {
     char start[LABEL_WIDTH + 1], all[DISPERSION_TERMS_MAX * NUMBER_TEXT_MAX] = "", text[NUMBER_TEXT_MAX];
-    wrap_row(stream, columns, label("law", start), "%s: %s", dispersion_name(m->law.kind),
-             dispersion_formula(m->law.kind));
-    for (int i = 0; i < m->law.count; i++) {
+    wrap_row(stream, columns, label("law", start), "%s: %s", dispersion_name(law->kind),
+             dispersion_formula(law->kind));
+    for (int i = 0; i < law->count; i++) {
         const size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", number_format(m->law.coefficient[i], text));
+        snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", number_format(law->coefficient[i], text));
     }
     wrap_row(stream, columns, label("coefficients", start), "%s", all);
 }
@@ -161,7 +161,7 @@ void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns
     wrap_row(stream, columns, label("range", start), "%s nm", media_range_text(m, range));
     wrap_row(stream, columns, label("temperature", start), "%s%s", temperature_text(m, text),
              isnan(m->temperature_c) ? "" : " C");
-    print_law(stream, m, columns);
+    print_law(stream, &m->law, columns);
     wrap_row(stream, columns, label("source", start), "%s", m->source);
     wrap_row(stream, columns, label("compared with", start), "%s", m->verified);
     if (m->note[0])
@@ -191,11 +191,11 @@ static json_t *extrapolated_json(const medium *m)
     return list;
 }
 
-static json_t *coefficients_json(const medium *m)
+static json_t *coefficients_json(const dispersion *law)
 {
     json_t *list = json_array();
-    for (int i = 0; list && i < m->law.count; i++)
-        json_add(&list, json_of_real(m->law.coefficient[i]));
+    for (int i = 0; list && i < law->count; i++)
+        json_add(&list, json_of_real(law->coefficient[i]));
     return list;
 }
 
@@ -222,7 +222,7 @@ static json_t *medium_json(const medium *m, double at_nm)
     bad |= json_object_set_new(o, "temperature_c", json_of_real(m->temperature_c));
     bad |= json_object_set_new(o, "law", json_string(dispersion_name(m->law.kind)));
     bad |= json_object_set_new(o, "formula", json_string(dispersion_formula(m->law.kind)));
-    bad |= json_object_set_new(o, "coefficients", coefficients_json(m));
+    bad |= json_object_set_new(o, "coefficients", coefficients_json(&m->law));
     bad |= json_object_set_new(o, "source", json_string(m->source));
     bad |= json_object_set_new(o, "verified", json_string(m->verified));
     bad |= json_object_set_new(o, "note", json_string(m->note));
@@ -380,4 +380,87 @@ json_t *media_rows_json(const medium *only, const metal *only_metal, double at_n
     json_decref(list);
     json_decref(metals);
     return NULL;
+}
+
+/* --- data from files --- */
+
+static bool data_cover(const optical_data *d, double lambda_nm)
+{
+    double low_nm, high_nm;
+    optical_data_range(d, &low_nm, &high_nm);
+    return low_nm <= lambda_nm && lambda_nm <= high_nm;
+}
+
+/* A value or n, and k; nothing outside the range. */
+static void print_data_at(FILE *stream, const optical_data *d, double lambda_nm, const char *name, int columns)
+{
+    char start[LABEL_WIDTH + 1], at[NUMBER_TEXT_MAX], value[NUMBER_TEXT_MAX], text[80] = "";
+    if (!data_cover(d, lambda_nm))
+        return;
+    if (optical_data_has_first(d))
+        snprintf(text, sizeof text, "%s", number_format_digits(optical_data_at(d, lambda_nm), 9, value));
+    if (optical_data_points(d, true) > 0)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%sk = %s", *text ? ", " : "",
+                 number_format_digits(optical_data_k(d, lambda_nm), 5, value));
+    wrap_row(stream, columns, label(name, start), "%s at %s nm", text, number_format(lambda_nm, at));
+}
+
+/* NaN unless d, F and C are within the range. */
+static double data_abbe_number(const optical_data *d)
+{
+    if (!optical_data_has_first(d) || !data_cover(d, LINE_HYDROGEN_F_NM) || !data_cover(d, LINE_HYDROGEN_C_NM))
+        return (double)NAN;
+    return (optical_data_at(d, LINE_HELIUM_D_NM) - 1.0) /
+           (optical_data_at(d, LINE_HYDROGEN_F_NM) - optical_data_at(d, LINE_HYDROGEN_C_NM));
+}
+
+void data_rows_details(FILE *stream, const char *file, const optical_data *d, double at_nm, int columns)
+{
+    char start[LABEL_WIDTH + 1], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
+    double low_nm, high_nm;
+    optical_data_range(d, &low_nm, &high_nm);
+    wrap_row(stream, columns, label("file", start), "%s", file);
+    for (int i = 0; i < LINES_ALL; i++)
+        print_data_at(stream, d, lines[i].lambda_nm, lines[i].name, columns);
+    if (isfinite(data_abbe_number(d)))
+        wrap_row(stream, columns, label("V_d", start), "%.4f", data_abbe_number(d));
+    if (at_nm > 0.0)
+        print_data_at(stream, d, at_nm, "n_at", columns);
+    wrap_row(stream, columns, label("range", start), "%s..%s nm", number_format_digits(low_nm, 9, low),
+             number_format_digits(high_nm, 9, high));
+    if (optical_data_law(d))
+        print_law(stream, optical_data_law(d), columns);
+    else if (optical_data_has_first(d))
+        wrap_row(stream, columns, label("points", start), "%zu", optical_data_points(d, false));
+    if (optical_data_points(d, true) > 0)
+        wrap_row(stream, columns, label("points of k", start), "%zu", optical_data_points(d, true));
+}
+
+static json_t *data_at_json(const optical_data *d, double lambda_nm)
+{
+    const bool covered = data_cover(d, lambda_nm);
+    return json_pack("{s:o,s:o,s:o}", "lambda_nm", json_of_real(lambda_nm), "n",
+                     json_of_real(covered && optical_data_has_first(d) ? optical_data_at(d, lambda_nm) : (double)NAN), "k",
+                     json_of_real(covered && optical_data_points(d, true) > 0 ? optical_data_k(d, lambda_nm)
+                                                                              : (double)NAN));
+}
+
+json_t *data_rows_json(const char *file, const optical_data *d, double at_nm)
+{
+    double low_nm, high_nm;
+    optical_data_range(d, &low_nm, &high_nm);
+    const dispersion *law = optical_data_law(d);
+    json_t *o = json_object();
+    int bad = json_object_set_new(o, "file", json_of_text(file));
+    for (int i = 0; i < LINES_ALL; i++)
+        bad |= json_object_set_new(o, lines[i].name, data_at_json(d, lines[i].lambda_nm));
+    bad |= json_object_set_new(o, "V_d", json_of_real(data_abbe_number(d)));
+    bad |= at_nm > 0.0 ? json_object_set_new(o, "at", data_at_json(d, at_nm)) : 0;
+    bad |= json_object_set_new(o, "low_nm", json_of_real(low_nm));
+    bad |= json_object_set_new(o, "high_nm", json_of_real(high_nm));
+    bad |= json_object_set_new(o, "law", law ? json_string(dispersion_name(law->kind)) : json_null());
+    bad |= json_object_set_new(o, "coefficients", law ? coefficients_json(law) : json_null());
+    bad |= json_object_set_new(o, "points", json_integer((json_int_t)optical_data_points(d, false)));
+    bad |= json_object_set_new(o, "points_of_k", json_integer((json_int_t)optical_data_points(d, true)));
+    return json_if(o, bad == 0);
 }

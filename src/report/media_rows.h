@@ -3,6 +3,7 @@
 #pragma once
 
 #include "optics/media.h"
+#include "optics/optical_data.h"
 #include <jansson.h>
 #include <stdio.h>
 
@@ -26,3 +27,7 @@ void metal_rows_details(FILE *stream, const metal *m, double at_nm, int columns)
 
 /* The given medium or metal, or both catalogues if both are NULL. Returns NULL when out of memory. */
 json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);
+
+/* Data from a file in detail, or as JSON, with the law of n, or NULL. */
+void data_rows_details(FILE *stream, const char *file, const optical_data *d, double at_nm, int columns);
+json_t *data_rows_json(const char *file, const optical_data *d, double at_nm);

@@ -126,7 +126,9 @@ static status set_formula(optical_reader *r, int number, double *c, int count)
     law->count = count;
     memcpy(law->coefficient, c, (size_t)count * sizeof *c);
     r->has_law = true;
-    return STATUS_OK;
+    diagnostic bad = {.what = ""};
+    const status code = dispersion_check_numbers(law, &bad);
+    return code == STATUS_OK ? code : wrong(r, bad.remedy, "%s", bad.what);
 }
 
 static status read_formula(optical_reader *r, const node *block, int number)
@@ -138,9 +140,8 @@ static status read_formula(optical_reader *r, const node *block, int number)
     if (count < 1 || !range || !range->text || numbers_in(range->text, ends, 2) != 2)
         return wrong(r, "give coefficients and wavelength_range: LOW HIGH, in um",
                      "its formula lacks coefficients or a range of wavelengths");
-    TRY(set_formula(r, number, c, count));
     r->law.low_nm = fmin(ends[0], ends[1]) * NM_PER_UM, r->law.high_nm = fmax(ends[0], ends[1]) * NM_PER_UM;
-    return STATUS_OK;
+    return set_formula(r, number, c, count);
 }
 
 /* Lines of a wavelength and n, k or both. */
@@ -289,9 +290,8 @@ static status end_glass(optical_reader *r, const glass_lines *g, const char *nam
 {
     if (g->terms == 0 || !g->has_ends)
         return wrong(r, "give lines CD and LD", "the glass %.60s lacks coefficients or a range of wavelengths", name);
-    TRY(set_glass_formula(r, g->formula, g->c));
     r->law.low_nm = g->ends[0] * NM_PER_UM, r->law.high_nm = g->ends[1] * NM_PER_UM;
-    return STATUS_OK;
+    return set_glass_formula(r, g->formula, g->c);
 }
 
 /* The glasses' names, for suggestions. */
