@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 typedef struct media_request {
-    const char *name; /* NULL: all */
-    double at_nm;     /* 0: not given */
+    const char *name;           /* NULL: all */
+    double at_nm;               /* 0: not given */
     const char *glass, *column; /* of a file; NULL: not given */
     bool json;
 } media_request;

@@ -145,8 +145,8 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return add_solid(s, name, shape, why);
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "remove '=SHAPE'", "a %.20s has no shape", kind);
-    static const param_group groups[] = {PARAM_SOLID,    PARAM_LIGHT, PARAM_BEAM,
-                                         PARAM_MATERIAL, PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA};
+    static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT,   PARAM_BEAM, PARAM_MATERIAL,
+                                         PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA};
     int which = 0;
     TRY(options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why));
     return scene_add(s, groups[which], name, NULL, why);

@@ -350,8 +350,9 @@ bool unused_data(const inert_case *c)
             return false;
         clear = one->visible && !material_is_opaque(&one->surface) ? one : clear;
     }
-    const inert_remedy remedy = clear ? inert_set("%s.medium=data and %s.medium_data=%s", clear->name, clear->name, c->name)
-                                      : inert_set_clear(NULL);
+    const inert_remedy remedy =
+        clear ? inert_set("%s.medium=data and %s.medium_data=%s", clear->name, clear->name, c->name)
+              : inert_set_clear(NULL);
     return inert_say(c, "unused-data", remedy.text, "no visible solid has these data");
 }
 
@@ -367,7 +368,8 @@ bool not_of_file(const inert_case *c)
     const char *path = c->s->data[c->at.index].path;
     const bool glasses = ends_in(path, ".agf"), database = ends_in(path, ".yml") || ends_in(path, ".yaml");
     if (is_named(c, "glass") && !glasses)
-        return inert_say(c, "no-catalogue", "use a catalogue, which ends in .agf", "the file is no catalogue of glasses");
+        return inert_say(c, "no-catalogue", "use a catalogue, which ends in .agf",
+                         "the file is no catalogue of glasses");
     if ((is_named(c, "column") || is_named(c, "scale")) && (glasses || database))
         return inert_say(c, "no-columns", "use a table, such as one that ends in .csv", "the file has no columns");
     return false;

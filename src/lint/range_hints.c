@@ -44,7 +44,8 @@ static const beam *beam_beyond(const scene *s, const dispersion *law, nm_range *
 
 static void say(const range_case *c, const char *where, const char *name, const dispersion *law, const char *who)
 {
-    const bool is_table = law->kind == DISPERSION_TABLE || law->kind == DISPERSION_CURVE, is_of_scene = is_table && !name;
+    const bool is_table = law->kind == DISPERSION_TABLE || law->kind == DISPERSION_CURVE,
+               is_of_scene = is_table && !name;
     const bool is_stated = law->low_nm != 0.0 || law->high_nm != 0.0;
     const double low_nm = is_stated ? law->low_nm : law->coefficient[0],
                  high_nm = is_stated ? law->high_nm : law->coefficient[law->count - 2];
@@ -83,11 +84,11 @@ static void hint_at_solid(const range_case *c, const solid *one)
     if (!one->visible || !(clear || material_is_layered(m, &c->s->render)) ||
         material_index_law(m, "", &law, NULL) != STATUS_OK)
         return;
-    hint_at_law(c, one->name, m->medium == MEDIUM_TABLE  ? NULL
+    hint_at_law(c, one->name,
+                m->medium == MEDIUM_TABLE  ? NULL
                 : m->medium == MEDIUM_DATA ? m->medium_data
                                            : medium_words[m->medium],
-                &law.law,
-                clear ? c->clear : c->layered);
+                &law.law, clear ? c->clear : c->layered);
 }
 
 static void hint_at_all(const range_case *c)

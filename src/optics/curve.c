@@ -23,7 +23,8 @@ static double slope_at(const double *point, size_t count, size_t i)
     if (count == 2)
         return secant(point, 0);
     const size_t left = i == 0 ? 0 : i == count - 1 ? count - 3 : i - 1; /* of the parabola's three points */
-    const double a = secant(point, left), b = secant(point, left + 1), bend = (b - a) / (point[2 * left + 4] - point[2 * left]);
+    const double a = secant(point, left), b = secant(point, left + 1),
+                 bend = (b - a) / (point[2 * left + 4] - point[2 * left]);
     const double slope = a + bend * (2.0 * point[2 * i] - point[2 * left] - point[2 * left + 2]);
     if (i > 0 && i < count - 1)
         return limited(slope, a, b);

@@ -102,7 +102,8 @@ static status check_curve(optical_curve c, bool is_k, diagnostic *why)
             return diagnose(why, STATUS_BAD_INPUT, "give each wavelength once, above 0",
                             "it has %.10g nm after %.10g nm", lambda_nm, i > 0 ? c.point[2 * i - 2] : 0.0);
         if (!isfinite(value) || (is_k && value < 0.0))
-            return diagnose(why, STATUS_BAD_INPUT, is_k ? "give an extinction index that is not negative" : "give numbers",
+            return diagnose(why, STATUS_BAD_INPUT,
+                            is_k ? "give an extinction index that is not negative" : "give numbers",
                             "the %s at %.10g nm is %g", is_k ? "extinction index k" : "value", lambda_nm, value);
     }
     return STATUS_OK;
@@ -116,7 +117,8 @@ static status check_law(const dispersion *law, diagnostic *why)
         const double n = dispersion_index(law, lambda_nm);
         if (!(n > 0.0 && n <= 100.0))
             return diagnose(why, STATUS_BAD_INPUT, "check its coefficients and its range of wavelengths",
-                            "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n, lambda_nm);
+                            "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n,
+                            lambda_nm);
     }
     return STATUS_OK;
 }
@@ -207,14 +209,15 @@ status optical_data_unpack(pack_reader *from, const optical_data **out, diagnost
     double *points = malloc(2 * (first + last) * sizeof *points + 1);
     if (!points)
         return out_of_memory(why);
-    dispersion law = {.kind = (dispersion_kind)(r.kind < 0 ? 0 : r.kind), .count = (int)r.terms, .low_nm = r.low_nm,
+    dispersion law = {.kind = (dispersion_kind)(r.kind < 0 ? 0 : r.kind),
+                      .count = (int)r.terms,
+                      .low_nm = r.low_nm,
                       .high_nm = r.high_nm};
     memcpy(law.coefficient, r.coefficient, sizeof law.coefficient);
     status code = pack_get(from, points, 2 * (first + last) * sizeof *points, why);
-    if (code == STATUS_OK &&
-        ((r.kind >= 0 && dispersion_check_numbers(&law, NULL) != STATUS_OK) ||
-         optical_data_create(r.kind >= 0 ? &law : NULL, (optical_curve){points, first},
-                             (optical_curve){points + 2 * first, last}, out, NULL) != STATUS_OK))
+    if (code == STATUS_OK && ((r.kind >= 0 && dispersion_check_numbers(&law, NULL) != STATUS_OK) ||
+                              optical_data_create(r.kind >= 0 ? &law : NULL, (optical_curve){points, first},
+                                                  (optical_curve){points + 2 * first, last}, out, NULL) != STATUS_OK))
         code = pack_damaged(why, "optical data");
     free(points);
     return code;

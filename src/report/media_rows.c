@@ -133,8 +133,7 @@ static void print_index(FILE *stream, const medium *m, const char *name, double 
 static void print_law(FILE *stream, const dispersion *law, int columns)
 {
     char start[LABEL_WIDTH + 1], all[DISPERSION_TERMS_MAX * NUMBER_TEXT_MAX] = "", text[NUMBER_TEXT_MAX];
-    wrap_row(stream, columns, label("law", start), "%s: %s", dispersion_name(law->kind),
-             dispersion_formula(law->kind));
+    wrap_row(stream, columns, label("law", start), "%s: %s", dispersion_name(law->kind), dispersion_formula(law->kind));
     for (int i = 0; i < law->count; i++) {
         const size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", number_format(law->coefficient[i], text));
@@ -439,10 +438,10 @@ void data_rows_details(FILE *stream, const char *file, const optical_data *d, do
 static json_t *data_at_json(const optical_data *d, double lambda_nm)
 {
     const bool covered = data_cover(d, lambda_nm);
-    return json_pack("{s:o,s:o,s:o}", "lambda_nm", json_of_real(lambda_nm), "n",
-                     json_of_real(covered && optical_data_has_first(d) ? optical_data_at(d, lambda_nm) : (double)NAN), "k",
-                     json_of_real(covered && optical_data_points(d, true) > 0 ? optical_data_k(d, lambda_nm)
-                                                                              : (double)NAN));
+    return json_pack(
+        "{s:o,s:o,s:o}", "lambda_nm", json_of_real(lambda_nm), "n",
+        json_of_real(covered && optical_data_has_first(d) ? optical_data_at(d, lambda_nm) : (double)NAN), "k",
+        json_of_real(covered && optical_data_points(d, true) > 0 ? optical_data_k(d, lambda_nm) : (double)NAN));
 }
 
 json_t *data_rows_json(const char *file, const optical_data *d, double at_nm)

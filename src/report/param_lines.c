@@ -9,7 +9,7 @@
 
 /* Placeholders of groups whose objects have names; the other groups use their own name as prefix. */
 static const char *const prefixes[PARAM_GROUP_COUNT] = {
-    [PARAM_MESH] = "MESH", [PARAM_TEXTURE] = "TEXTURE",   [PARAM_DATA] = "DATA", [PARAM_LIGHT] = "LIGHT",
+    [PARAM_MESH] = "MESH", [PARAM_TEXTURE] = "TEXTURE",   [PARAM_DATA] = "DATA",  [PARAM_LIGHT] = "LIGHT",
     [PARAM_BEAM] = "BEAM", [PARAM_MATERIAL] = "MATERIAL", [PARAM_SOLID] = "SOLID"};
 
 char *param_lines_path(const param *row, char *text, size_t size)

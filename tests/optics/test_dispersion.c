@@ -46,7 +46,8 @@ static long double expected(const dispersion *law, long double lambda_nm)
     case DISPERSION_GAS:
     case DISPERSION_GAS_FROM: return 1.0L + sum;
     case DISPERSION_TWO_RESONANCES:
-        sum = c[0] + c[1] * powl(L, c[2]) / (L * L - powl(c[3], c[4])) + c[5] * powl(L, c[6]) / (L * L - powl(c[7], c[8]));
+        sum = c[0] + c[1] * powl(L, c[2]) / (L * L - powl(c[3], c[4])) +
+              c[5] * powl(L, c[6]) / (L * L - powl(c[7], c[8]));
         for (int i = 9; i < law->count; i += 2)
             sum += c[i] * powl(L, c[i + 1]);
         return sqrtl(sum);
@@ -204,7 +205,7 @@ static void invalid_laws_are_refused_with_a_reason(void **state)
         dispersion law;
         const char *what, *remedy;
     } bad[] = {
-        {{DISPERSION_KIND_COUNT, 1, {1.5}, 0, 0}, "unknown dispersion law", ""},
+        {{(dispersion_kind)DISPERSION_KIND_COUNT, 1, {1.5}, 0, 0}, "unknown dispersion law", ""},
         {{DISPERSION_CONSTANT, 0, {0}, 0, 0}, "0 numbers do not fit the dispersion law 'constant'", "one number"},
         {{DISPERSION_CONSTANT, -1, {0}, 0, 0}, "-1 numbers", "one number"},
         {{DISPERSION_CONSTANT, 2, {1.5, 1.5}, 0, 0}, "2 numbers", "one number"},

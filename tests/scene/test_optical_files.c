@@ -18,6 +18,7 @@
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include "scene/package/package.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -116,8 +117,7 @@ static void a_catalogue_s_formulas_are_read(void **state)
     } cases[] = {
         {GLASS("1", "2.25 -0.01 0.01 0.001 0.0001 0.00001"),
          sqrt(2.25 - 0.0025 + 0.04 + 0.016 + 0.0064 + 0.00001 * 256)},
-        {GLASS("2", "1 0.01 0.2 0.02 1 100"),
-         sqrt(1 + 0.25 / 0.24 + 0.05 / 0.23 + 0.25 / (0.25 - 100))},
+        {GLASS("2", "1 0.01 0.2 0.02 1 100"), sqrt(1 + 0.25 / 0.24 + 0.05 / 0.23 + 0.25 / (0.25 - 100))},
         {GLASS("3", "1.4 0.01 0.001 -0.01 0.002 0.003"),
          1.4 + 0.01 * M + 0.001 * M * M - 0.0025 + 0.002 / 16 + 0.003 / 64},
         {GLASS("4", "0.5 1 0.1 0.02 0.2"), sqrt(1 + 0.5 + 0.25 / (0.25 - 0.01) + 0.02 / (0.25 - 0.04))},
@@ -127,7 +127,8 @@ static void a_catalogue_s_formulas_are_read(void **state)
         {GLASS("7", "2.2 0.02 0.01 0.03"), sqrt(2.2 + 0.02 / 0.24 - 0.0075)},
         {GLASS("8", "1.2 1 0.01 0.03"), sqrt(1.2 + 0.25 / 0.24 - 0.0075)},
         {GLASS("9", "1.2 1 0.01 0.1 60"), sqrt(1.2 + 0.25 / 0.24 + 0.025 / (0.25 - 60))},
-        {GLASS("10", "2.25 -0.01 0.01 0.001 0 0 1e-6 1e-7"), sqrt(2.25 - 0.0025 + 0.04 + 0.016 + 1e-6 * 1024 + 1e-7 * 4096)},
+        {GLASS("10", "2.25 -0.01 0.01 0.001 0 0 1e-6 1e-7"),
+         sqrt(2.25 - 0.0025 + 0.04 + 0.016 + 1e-6 * 1024 + 1e-7 * 4096)},
         {GLASS("11", "1 0.01 0 0 0 0 0 0 0.1 0.03"), sqrt(1 + 0.25 / 0.24 + 0.025 / 0.22)},
         {GLASS("12", "2.25 -0.01 0.01 0 0 0 0.01 0.1"), sqrt(2.25 - 0.0025 + 0.04 + 0.01 / 16 + 0.1 / 64)},
         /* the numbers go on in the next lines */
@@ -141,11 +142,11 @@ static void a_catalogue_s_formulas_are_read(void **state)
     }
 }
 
-#define TWO                                                                                               \
-    "CC a catalogue\r\nNM N-BK7 2 517642.251 1.5168 64.17 0 1\r\n"                                        \
-    "CD 1.03961212E+00 6.00069867E-03 2.31792344E-01 2.00179144E-02 1.01046945E+00 1.03560653E+02\r\n"    \
-    "LD 3.0E-01 2.5E+00\r\nIT 4.0E-01 9.97E-01 1.0E+01\r\nIT 4.0E-01 9.92E-01 2.5E+01\r\n"                \
-    "IT 5.0E-01 0.0 2.5E+01\r\nNM F2 2 620364.360 1.62004 36.37 0 1\r\n"                                  \
+#define TWO                                                                                            \
+    "CC a catalogue\r\nNM N-BK7 2 517642.251 1.5168 64.17 0 1\r\n"                                     \
+    "CD 1.03961212E+00 6.00069867E-03 2.31792344E-01 2.00179144E-02 1.01046945E+00 1.03560653E+02\r\n" \
+    "LD 3.0E-01 2.5E+00\r\nIT 4.0E-01 9.97E-01 1.0E+01\r\nIT 4.0E-01 9.92E-01 2.5E+01\r\n"             \
+    "IT 5.0E-01 0.0 2.5E+01\r\nNM F2 2 620364.360 1.62004 36.37 0 1\r\n"                               \
     "CD 1.34533359E+00 9.97743871E-03 2.09073176E-01 4.70450767E-02 9.37357162E-01 1.11886764E+02\r\nLD .32 2.5\r\n"
 
 /* Published indices; T = exp(-4 pi k d / lambda), of the thicker sample. */
@@ -176,9 +177,9 @@ static void a_catalogue_may_be_utf_16(void **state)
         for (size_t i = 0; i + 1 < sizeof plain; i++)
             wide[2 + 2 * i + (size_t)high_first] = plain[i], wide[3 + 2 * i - (size_t)high_first] = 0;
         const optical_data *d;
-        assert_int_equal(optical_file_parse("w.agf", wide, 2 * sizeof plain, &(optical_file_choice){"test", "", 1}, &d,
-                                            NULL),
-                         STATUS_OK);
+        assert_int_equal(
+            optical_file_parse("w.agf", wide, 2 * sizeof plain, &(optical_file_choice){"test", "", 1}, &d, NULL),
+            STATUS_OK);
         assert_near(optical_data_at(d, 500), 1.52, 1e-15);
         optical_data_release(d);
     }
@@ -289,6 +290,17 @@ static void end(folder *f, scene *s)
     rmdir(f->path);
 }
 
+static scene *through_a_package(const scene *s)
+{
+    void *bytes;
+    size_t size;
+    scene *again = NULL;
+    assert_int_equal(scene_pack(s, &bytes, &size, NULL), STATUS_OK);
+    assert_int_equal(scene_unpack(bytes, size, &again, NULL), STATUS_OK);
+    free(bytes);
+    return again;
+}
+
 /* A medium from a file equals the catalogue's: relative to air by default; k absorbs by 4 pi k / lambda. */
 static void a_medium_is_read_from_a_file(void **state)
 {
@@ -303,7 +315,7 @@ static void a_medium_is_read_from_a_file(void **state)
                           "         other: {shape: sphere, position: [3, 0, 0], transparency: 1, medium: bk7}}\n");
     assert_int_equal(s->data_count, 1);
     assert_string_equal(s->data[0].name, "N-BK7");
-    for (int copy = 0; copy < 2; copy++) {
+    for (int copy = 0; copy < 3; copy++) {
         index_law own, known;
         assert_int_equal(material_index_law(&s->solids[0].surface, "", &own, NULL), STATUS_OK);
         assert_int_equal(material_index_law(&s->solids[1].surface, "", &known, NULL), STATUS_OK);
@@ -311,7 +323,7 @@ static void a_medium_is_read_from_a_file(void **state)
             assert_near(index_law_at(&own, nm), index_law_at(&known, nm), 1e-15);
         assert_near(material_absorption_at(&s->solids[0].surface, 500), 4 * acos(-1) * 1e-8 / 500e-9, 1e-12);
         assert_true(material_absorbs(&s->solids[0].surface));
-        scene *other = scene_clone(s);
+        scene *other = copy == 0 ? scene_clone(s) : through_a_package(s);
         assert_non_null(other);
         scene_destroy(s);
         s = other;
@@ -371,16 +383,11 @@ static void wrong_media_of_files_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_database_s_formulas_are_read),
-        cmocka_unit_test(the_database_s_tables_are_read),
-        cmocka_unit_test(a_catalogue_s_formulas_are_read),
-        cmocka_unit_test(a_glass_of_a_catalogue_is_found),
-        cmocka_unit_test(a_catalogue_may_be_utf_16),
-        cmocka_unit_test(tables_are_read_in_every_form),
-        cmocka_unit_test(columns_and_k_are_chosen),
-        cmocka_unit_test(wrong_files_are_refused_with_their_line),
-        cmocka_unit_test(a_medium_is_read_from_a_file),
-        cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
+        cmocka_unit_test(the_database_s_formulas_are_read), cmocka_unit_test(the_database_s_tables_are_read),
+        cmocka_unit_test(a_catalogue_s_formulas_are_read),  cmocka_unit_test(a_glass_of_a_catalogue_is_found),
+        cmocka_unit_test(a_catalogue_may_be_utf_16),        cmocka_unit_test(tables_are_read_in_every_form),
+        cmocka_unit_test(columns_and_k_are_chosen),         cmocka_unit_test(wrong_files_are_refused_with_their_line),
+        cmocka_unit_test(a_medium_is_read_from_a_file),     cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
         cmocka_unit_test(wrong_media_of_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

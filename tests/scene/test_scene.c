@@ -470,7 +470,7 @@ static void invalid_media_are_refused_with_a_location(void **state)
         "solids:\n  a: {shape: sphere, medium: wather}\n",
         "test.yaml:2:30: a.medium: 'wather' is not one of the choices; did you mean 'water'? It is one of: ior, "
         "sellmeier, cauchy, "
-        "table, air, "
+        "table, data, air, "
         "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
         "sapphire, diamond, silver, gold, copper, aluminium");
     expect_error("solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",

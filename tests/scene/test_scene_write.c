@@ -127,6 +127,7 @@ static void every_scene_of_the_project_round_trips_with_the_same_film(void **sta
 static const char one_of_each[] =
     "meshes: {body: {generate: box}, model: {file: model.obj}, toy: {generate: slime}}\n"
     "textures: {wood: {file: wood.png}, bark: {file: bark.png}}\n"
+    "data: {measured: {file: a.csv}}\n"
     "materials: {paint: {}}\n"
     "lights: {lamp: {}}\n"
     "beams: {ray: {}}\n"
@@ -161,7 +162,12 @@ static size_t candidates(const param *row, char text[][100], size_t room)
         return 2;
     case PARAM_LIST: snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0); return 1;
     case PARAM_PATH: snprintf(text[0], 100, "images/it's: a sky #1.png"); return 1;
-    case PARAM_WORD: snprintf(text[0], 100, row->group == PARAM_MATERIAL ? "bark" : "body"); return 1;
+    case PARAM_WORD:
+        snprintf(text[0], 100,
+                 strcmp(row->name, "medium_data") == 0 ? "measured"
+                 : row->group == PARAM_MATERIAL        ? "bark"
+                                                       : "body");
+        return 1;
     case PARAM_CHOICE: break;
     }
     return 0;
@@ -210,9 +216,10 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
 static void every_parameter_round_trips_with_other_values(void **state)
 {
     (void)state;
-    static const char *const owners[] = {"render",  "camera", "background", "body",   "model",     "toy",    "wood",
-                                         "ray",     "lamp",   "paint",      "plane1", "cylinder1", "cup1",   "box1",
-                                         "sphere1", "mesh1",  "painted",    "cone1",  "torus1",    "prism1", "lens1"};
+    static const char *const owners[] = {"render",    "camera",   "background", "body",    "model", "toy",
+                                         "wood",      "measured", "ray",        "lamp",    "paint", "plane1",
+                                         "cylinder1", "cup1",     "box1",       "sphere1", "mesh1", "painted",
+                                         "cone1",     "torus1",   "prism1",     "lens1"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {

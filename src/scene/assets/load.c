@@ -314,8 +314,8 @@ static status load_data(const scene *s, data_entry *d, diagnostic *why)
     if (!path)
         return out_of_memory(why);
     diagnostic bad = {.what = ""};
-    const status code = optical_file_read(
-        path, s->limits.root, &(optical_file_choice){d->glass, d->column, d->scale}, &d->data, &bad);
+    const status code =
+        optical_file_read(path, s->limits.root, &(optical_file_choice){d->glass, d->column, d->scale}, &d->data, &bad);
     free(path);
     return code == STATUS_OK ? code : scene_file_error(s, d->name, d->path_line, d->path_column, &bad, code, why);
 }

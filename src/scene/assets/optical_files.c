@@ -110,11 +110,10 @@ static status set_formula(optical_reader *r, int number, double *c, int count)
     static const struct {
         dispersion_kind kind;
         int least;
-    } of[] = {[1] = {DISPERSION_SELLMEIER_FROM, 1}, [2] = {DISPERSION_SELLMEIER_FROM, 1},
-              [3] = {DISPERSION_POLYNOMIAL, 1},     [4] = {DISPERSION_TWO_RESONANCES, 9},
-              [5] = {DISPERSION_CAUCHY_POWERS, 1},  [6] = {DISPERSION_GAS_FROM, 1},
-              [7] = {DISPERSION_HERZBERGER, 6},     [8] = {DISPERSION_RETRO, 4},
-              [9] = {DISPERSION_EXOTIC, 6}};
+    } of[] = {
+        [1] = {DISPERSION_SELLMEIER_FROM, 1}, [2] = {DISPERSION_SELLMEIER_FROM, 1}, [3] = {DISPERSION_POLYNOMIAL, 1},
+        [4] = {DISPERSION_TWO_RESONANCES, 9}, [5] = {DISPERSION_CAUCHY_POWERS, 1},  [6] = {DISPERSION_GAS_FROM, 1},
+        [7] = {DISPERSION_HERZBERGER, 6},     [8] = {DISPERSION_RETRO, 4},          [9] = {DISPERSION_EXOTIC, 6}};
     dispersion *law = &r->law;
     if (number < 1 || number > 9)
         return wrong(r, "use formulas 1 to 9", "it has formula %d, which is not known", number);
@@ -211,9 +210,10 @@ static status read_database(optical_reader *r, const char *text, size_t size)
  * dispersion formulas". */
 static status set_glass_formula(optical_reader *r, int number, const double *c)
 {
-    static const double powers[][9] = {
-        [1] = {0, 2, -2, -4, -6, -8}, [10] = {0, 2, -2, -4, -6, -8, -10, -12}, [12] = {0, 2, -2, -4, -6, -8, 4, 6},
-        [13] = {0, 2, 4, -2, -4, -6, -8, -10, -12}};
+    static const double powers[][9] = {[1] = {0, 2, -2, -4, -6, -8},
+                                       [10] = {0, 2, -2, -4, -6, -8, -10, -12},
+                                       [12] = {0, 2, -2, -4, -6, -8, 4, 6},
+                                       [13] = {0, 2, 4, -2, -4, -6, -8, -10, -12}};
     static const int terms[] = {[1] = 6, [2] = 3, [6] = 4, [10] = 8, [11] = 5, [12] = 8, [13] = 9};
     double a[DISPERSION_TERMS_MAX] = {0};
     switch (number) {
@@ -227,7 +227,9 @@ static status set_glass_formula(optical_reader *r, int number, const double *c)
         return set_formula(r, 3, a, 2 * terms[number] - 1);
     case 2:
     case 6:
-    case 11: memcpy(a + 1, c, 2 * (size_t)terms[number] * sizeof *c); return set_formula(r, 2, a, 2 * terms[number] + 1);
+    case 11:
+        memcpy(a + 1, c, 2 * (size_t)terms[number] * sizeof *c);
+        return set_formula(r, 2, a, 2 * terms[number] + 1);
     case 3: memcpy(a, c, 6 * sizeof *c); return set_formula(r, 7, a, 6);
     case 4: return set_formula(r, 4, (double[16]){1.0 + c[0], c[1], 2, c[2], 2, c[3], 0, c[4], 2}, 9);
     case 5: return set_formula(r, 5, (double[16]){c[0], c[1], -1, c[2], -3.5}, 5);
@@ -487,9 +489,9 @@ static status read_line(table_reader *t, const char *text)
         t->of_k = true;
         return STATUS_OK;
     }
-    return strncmp(text, ">>>", 3) == 0 ? STATUS_OK /* the end mark of a spectrometer */
-                                        : wrong(t->r, "give lines of numbers", "'%.40s' is not a number",
-                                                t->line.cell[0]);
+    return strncmp(text, ">>>", 3) == 0
+               ? STATUS_OK /* the end mark of a spectrometer */
+               : wrong(t->r, "give lines of numbers", "'%.40s' is not a number", t->line.cell[0]);
 }
 
 /* Whether the wavelengths are in um. */

@@ -328,12 +328,12 @@ static status read_sections(const scene_reader *r)
         status (*read)(const scene_reader *, const char *, param_group, const node *);
         param_group group;
     } sections[] = {
-        {"title", read_title, PARAM_GROUP_COUNT},    {"render", read_settings, PARAM_RENDER},
-        {"camera", read_camera, PARAM_CAMERA},       {"background", read_settings, PARAM_BACKGROUND},
-        {"meshes", read_objects, PARAM_MESH},        {"textures", read_objects, PARAM_TEXTURE},
-        {"data", read_objects, PARAM_DATA},
-        {"materials", read_objects, PARAM_MATERIAL}, {"lights", read_objects, PARAM_LIGHT},
-        {"beams", read_objects, PARAM_BEAM},         {"solids", read_objects, PARAM_SOLID},
+        {"title", read_title, PARAM_GROUP_COUNT}, {"render", read_settings, PARAM_RENDER},
+        {"camera", read_camera, PARAM_CAMERA},    {"background", read_settings, PARAM_BACKGROUND},
+        {"meshes", read_objects, PARAM_MESH},     {"textures", read_objects, PARAM_TEXTURE},
+        {"data", read_objects, PARAM_DATA},       {"materials", read_objects, PARAM_MATERIAL},
+        {"lights", read_objects, PARAM_LIGHT},    {"beams", read_objects, PARAM_BEAM},
+        {"solids", read_objects, PARAM_SOLID},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);

@@ -121,7 +121,10 @@ static bool is_section_of_objects(param_group group)
 static void put_section(scene_writer *w)
 {
     if (!w->in_section) {
-        const char *plural = w->group == PARAM_MESH ? "es" : w->group == PARAM_DATA ? "" : is_section_of_objects(w->group) ? "s" : "";
+        const char *plural = w->group == PARAM_MESH            ? "es"
+                             : w->group == PARAM_DATA          ? ""
+                             : is_section_of_objects(w->group) ? "s"
+                                                               : "";
         fprintf(w->out, "%s%s%s:\n", w->begun ? "\n" : "", param_group_name(w->group), plural);
         w->begun = w->in_section = true;
     }
@@ -247,8 +250,8 @@ static status check_sources(const scene *s, diagnostic *why)
 static status put_scene(scene_writer *w)
 {
     /* Objects come before the objects that refer to them. */
-    static const param_group order[] = {PARAM_RENDER,   PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH, PARAM_TEXTURE, PARAM_DATA,
-                                        PARAM_MATERIAL, PARAM_LIGHT,  PARAM_BEAM,       PARAM_SOLID};
+    static const param_group order[] = {PARAM_RENDER, PARAM_CAMERA,   PARAM_BACKGROUND, PARAM_MESH, PARAM_TEXTURE,
+                                        PARAM_DATA,   PARAM_MATERIAL, PARAM_LIGHT,      PARAM_BEAM, PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         TRY(write_check_text("title", w->s->title, w->why));

@@ -9,7 +9,8 @@
 #include <string.h>
 
 #define NAME(name) name,
-const char *const medium_words[] = {"ior", "sellmeier", "cauchy", "table", "data", MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
+const char *const medium_words[] = {"ior",   "sellmeier", "cauchy",
+                                    "table", "data",      MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
 const char *const surrounding_words[] = {"ior", MEDIA_NAMES(NAME) NULL};
 
 static index_law law_of_catalogue(int64_t at)
@@ -167,7 +168,8 @@ static bool has_k(const material *m)
 /* An opaque material whose surface is a metal's: by its medium, or by its extinction. */
 static bool material_is_conductor(const material *m)
 {
-    return m->transparency == 0.0 && (material_metal(m) || has_k(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
+    return m->transparency == 0.0 &&
+           (material_metal(m) || has_k(m) || material_extinction_index(m, VISIBLE_LOW_NM) > 0.0);
 }
 
 bool material_has_film(const material *m)
@@ -233,7 +235,10 @@ status material_crystal_check(const material *m, const char *label, diagnostic *
 double material_extinction_index(const material *m, double lambda_nm)
 {
     const metal *of = material_metal(m);
-    return of ? metal_index(of, lambda_nm).im : has_k(m) ? optical_data_k(m->index_data, lambda_nm) : m->medium == MEDIUM_IOR ? m->extinction : 0.0;
+    return of                        ? metal_index(of, lambda_nm).im
+           : has_k(m)                ? optical_data_k(m->index_data, lambda_nm)
+           : m->medium == MEDIUM_IOR ? m->extinction
+                                     : 0.0;
 }
 
 const char *material_medium_name(const material *m)
@@ -271,7 +276,8 @@ static double between_channels(vec3 a, double lambda_nm)
 static double absorption_of_k(const material *m, double lambda_nm)
 {
     const double four_pi = 12.566370614359172954;
-    return m->transparency > 0.0 && has_k(m) ? four_pi * optical_data_k(m->index_data, lambda_nm) / (lambda_nm * 1e-9) : 0.0;
+    return m->transparency > 0.0 && has_k(m) ? four_pi * optical_data_k(m->index_data, lambda_nm) / (lambda_nm * 1e-9)
+                                             : 0.0;
 }
 
 double material_absorption_at(const material *m, double lambda_nm)

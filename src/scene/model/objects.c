@@ -31,9 +31,9 @@ static const group_storage lists[PARAM_GROUP_COUNT] = {
     [PARAM_SOLID] = {offsetof(scene, solids), offsetof(scene, solid_count), sizeof(solid), 0},
 };
 
-_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 && offsetof(data_entry, name) == 0 &&
-                   offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(beam, name) == 0 &&
-                   offsetof(solid, name) == 0,
+_Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 &&
+                   offsetof(data_entry, name) == 0 && offsetof(named_material, name) == 0 &&
+                   offsetof(light, name) == 0 && offsetof(beam, name) == 0 && offsetof(solid, name) == 0,
                "the name is the first field");
 
 static size_t *count_of(const scene *s, param_group group)

@@ -494,7 +494,8 @@ static const param table[] = {
          "coefficients of the dispersion law at L in um; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ...; "
          "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
     {PARAM_MATERIAL, "medium_data", PARAM_WORD, "", 0, 0, false, "",
-     "data with the refractive index, if medium is data; k makes a transparent medium absorb, and an opaque one a metal",
+     "data with the refractive index, if medium is data; k makes a transparent medium absorb, and an opaque one a "
+     "metal",
      NULL, OF(material, medium_data)},
     REAL(PARAM_MATERIAL, material, extraordinary_ior, "", 0, 5, "0",
          "extraordinary index of a uniaxial crystal, relative to vacuum, at every wavelength, for integrator whitted; "

@@ -20,8 +20,8 @@ static const char *material_of(const scene *s, const solid *one)
 /* Whether both scenes have the same objects, so that they differ in parameters only. */
 static bool same_objects(const scene *a, const scene *b)
 {
-    static const param_group groups[] = {PARAM_SOLID,    PARAM_LIGHT, PARAM_BEAM,
-                                         PARAM_MATERIAL, PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA};
+    static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT,   PARAM_BEAM, PARAM_MATERIAL,
+                                         PARAM_MESH,  PARAM_TEXTURE, PARAM_DATA};
     bool same = true;
     for (size_t g = 0; g < sizeof groups / sizeof *groups && same; g++) {
         same = param_place_group_size(a, groups[g]) == param_place_group_size(b, groups[g]);
