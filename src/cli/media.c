@@ -70,7 +70,7 @@ static status find(const media_request *request, media_choice *out, diagnostic *
     for (size_t i = 0; i < count; i++)
         names[i] = i < media ? media_at(i)->name : metals_at(i - media)->name;
     int which = 0;
-    const status result = options_choice("media", "medium", request->name, names, count, &which, why);
+    const status result = options_choice("media", "medium", media_usual_name(request->name), names, count, &which, why);
     if ((size_t)which < media)
         out->clear = media_at((size_t)which);
     else

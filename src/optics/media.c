@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- media ---- */
 
@@ -187,6 +188,38 @@ const medium *media_find(const char *name)
         if (strcmp(medium_rows[i].name, name) == 0)
             return &medium_rows[i];
     return NULL;
+}
+
+const char *media_usual_name(const char *name)
+{
+    static const char *const others[][2] = {{"n-bk7", "bk7"},
+                                            {"schott n-bk7", "bk7"},
+                                            {"silica", "fused-silica"},
+                                            {"sio2", "fused-silica"},
+                                            {"acrylic", "pmma"},
+                                            {"plexiglas", "pmma"},
+                                            {"plexiglass", "pmma"},
+                                            {"glycerine", "glycerol"},
+                                            {"glycerin", "glycerol"},
+                                            {"h2o", "water"},
+                                            {"window-glass", "soda-lime"},
+                                            {"float-glass", "soda-lime"},
+                                            {"al2o3", "sapphire"},
+                                            {"ag", "silver"},
+                                            {"au", "gold"},
+                                            {"cu", "copper"},
+                                            {"al", "aluminium"},
+                                            {"aluminum", "aluminium"}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (strcasecmp(name, others[i][0]) == 0)
+            return others[i][1];
+    for (size_t i = 0; i < media_count(); i++)
+        if (strcasecmp(name, media_at(i)->name) == 0)
+            return media_at(i)->name;
+    for (size_t i = 0; i < metals_count(); i++)
+        if (strcasecmp(name, metals_at(i)->name) == 0)
+            return metals_at(i)->name;
+    return name;
 }
 
 double medium_index(const medium *m, double lambda_nm)

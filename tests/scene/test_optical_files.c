@@ -358,6 +358,30 @@ static void k_makes_an_opaque_solid_a_metal(void **state)
     end(&f, s);
 }
 
+/* Names as makers and shops write them. */
+static void usual_names_of_media_are_understood(void **state)
+{
+    (void)state;
+    static const char *const names[][2] = {
+        {"N-BK7", "bk7"},     {"BK7", "bk7"},      {"Water", "water"}, {"SiO2", "fused-silica"},
+        {"N-SF11", "n-sf11"}, {"acrylic", "pmma"}, {"Au", "gold"},     {"aluminum", "aluminium"},
+        {"IOR", "IOR"}};
+    for (size_t i = 0; i < COUNT(names); i++)
+        assert_string_equal(media_usual_name(names[i][0]), names[i][1]);
+    scene *s;
+    static const char text[] =
+        "background: {medium: Air}\nsolids: {a: {shape: sphere, transparency: 1, medium: N-BK7}}\n";
+    assert_int_equal(scene_read_text("a.yaml", text, strlen(text), &s, NULL), STATUS_OK);
+    char *value;
+    assert_int_equal(scene_get(s, "a.medium", &value, NULL), STATUS_OK);
+    assert_string_equal(value, "bk7");
+    free(value);
+    diagnostic why = {.what = ""};
+    assert_int_equal(scene_set(s, "a.medium", "H-ZLAF90", &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.remedy, "glass: NAME"));
+    scene_destroy(s);
+}
+
 static void wrong_media_of_files_are_refused(void **state)
 {
     (void)state;
@@ -383,11 +407,17 @@ static void wrong_media_of_files_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_database_s_formulas_are_read), cmocka_unit_test(the_database_s_tables_are_read),
-        cmocka_unit_test(a_catalogue_s_formulas_are_read),  cmocka_unit_test(a_glass_of_a_catalogue_is_found),
-        cmocka_unit_test(a_catalogue_may_be_utf_16),        cmocka_unit_test(tables_are_read_in_every_form),
-        cmocka_unit_test(columns_and_k_are_chosen),         cmocka_unit_test(wrong_files_are_refused_with_their_line),
-        cmocka_unit_test(a_medium_is_read_from_a_file),     cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
+        cmocka_unit_test(the_database_s_formulas_are_read),
+        cmocka_unit_test(the_database_s_tables_are_read),
+        cmocka_unit_test(a_catalogue_s_formulas_are_read),
+        cmocka_unit_test(a_glass_of_a_catalogue_is_found),
+        cmocka_unit_test(a_catalogue_may_be_utf_16),
+        cmocka_unit_test(tables_are_read_in_every_form),
+        cmocka_unit_test(columns_and_k_are_chosen),
+        cmocka_unit_test(wrong_files_are_refused_with_their_line),
+        cmocka_unit_test(a_medium_is_read_from_a_file),
+        cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
+        cmocka_unit_test(usual_names_of_media_are_understood),
         cmocka_unit_test(wrong_media_of_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

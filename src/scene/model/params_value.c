@@ -2,6 +2,7 @@
 #include "scene/model/params_value.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "optics/media.h"
 #include "scene/model/check.h"
 #include "scene/model/material.h"
 
@@ -255,7 +256,9 @@ static bool choose(const param *row, const char *text, int64_t *index)
 
 static status parse_choice(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)
 {
-    if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out)))
+    const bool is_medium = strcmp(row->name, "medium") == 0;
+    if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out)) ||
+        (is_medium && choose(row, media_usual_name(text), out)))
         return STATUS_OK;
     /* No suggestion for a switch: off and on are equally near in spelling, and are opposites. */
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
@@ -265,6 +268,10 @@ static status parse_choice(const param *row, const char *label, const char *text
                  param_range_text(row, range, sizeof range));
         return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not one of the choices", label, text);
     }
+    if (is_medium)
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "give a name of the catalogue (cuvette media), or a file, as {file: schott.agf, glass: NAME}",
+                        "%s: '" SHOWN "' is not one of the choices", label, text);
     return wrong(row, false, why, "%s: '" SHOWN "' is not one of the choices", label, text);
 }
 
