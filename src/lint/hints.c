@@ -241,7 +241,8 @@ static void hint_at_lights(const scene *s, const note_sink *taker)
     }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
-        if (lamp->spectrum >= LAMP_SODIUM && lamp->intensity > 0.0 && s->render.spectrum != SPECTRUM_SPECTRAL)
+        if (lamp->spectrum >= LAMP_SODIUM && lamp->spectrum != LAMP_DATA && lamp->intensity > 0.0 &&
+            s->render.spectrum != SPECTRUM_SPECTRAL)
             note_report(taker, lamp->name, "spectrum", "set render.spectrum=spectral, which renders each line",
                         "%s emits spectral lines, and an rgb image shows only their colour", lamp->name);
         if (lamp->polarised > 0.0 && !s->render.polarisation)

@@ -30,6 +30,7 @@ static bool is_of_region(const inert_case *c)
                                            "medium_data",
                                            "absorb_per_m",
                                            "absorb_spectrum",
+                                           "absorb_data",
                                            "scatter_per_m",
                                            "asymmetry",
                                            "tint_distance",

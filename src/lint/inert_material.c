@@ -96,6 +96,14 @@ bool no_color(const inert_case *c)
 }
 
 /* A transparent solid also has a tint. */
+/* Measured values replace the parameter. */
+bool by_data(const inert_case *c)
+{
+    const bool color = is_named(c, "color"), replaced = color ? c->m->color_data[0] : c->m->absorb_data[0];
+    return replaced && inert_say(c, "by-data", inert_set("%s.%s=", c->name, color ? "color_data" : "absorb_data").text,
+                                 "its %s replace it", color ? "color_data" : "absorb_data");
+}
+
 bool no_color_or_tint(const inert_case *c)
 {
     const bool tints = !material_is_opaque(c->m) && !is_unlit(c->s);

@@ -346,14 +346,19 @@ bool unused_data(const inert_case *c)
     const solid *clear = NULL;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        if (one->visible && one->surface.medium == MEDIUM_DATA && strcmp(one->surface.medium_data, c->name) == 0)
+        const material *m = &one->surface;
+        if (one->visible && ((m->medium == MEDIUM_DATA && strcmp(m->medium_data, c->name) == 0) ||
+                             strcmp(m->color_data, c->name) == 0 || strcmp(m->absorb_data, c->name) == 0))
             return false;
         clear = one->visible && !material_is_opaque(&one->surface) ? one : clear;
     }
     const inert_remedy remedy =
         clear ? inert_set("%s.medium=data and %s.medium_data=%s", clear->name, clear->name, c->name)
               : inert_set_clear(NULL);
-    return inert_say(c, "unused-data", remedy.text, "no visible solid has these data");
+    for (size_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].spectrum == LAMP_DATA && strcmp(s->lights[i].spectrum_data, c->name) == 0)
+            return false;
+    return inert_say(c, "unused-data", remedy.text, "no visible solid and no light has these data");
 }
 
 static bool ends_in(const char *path, const char *ending)

@@ -37,7 +37,7 @@ static const needs_row light_rows[] = {
                             "absorb_per_m"),
     NEEDS_LIGHT(LIGHT, "*"),
     NEEDS_LIGHT(MATERIAL,
-                "ambient diffuse specular shininess absorb_per_m absorb_spectrum tint_distance extinction "
+                "ambient diffuse specular shininess absorb_per_m absorb_spectrum absorb_data tint_distance extinction "
                 "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
                 "birefringence roughness scatter_per_m asymmetry"),
 };
@@ -129,6 +129,7 @@ static const needs_row rows[] = {
     NEEDS(LIGHT, "color", "spectrum=color"),
     NEEDS(LIGHT, "temperature_k", "spectrum=black_body"),
     NEEDS(LIGHT, "line_nm", "spectrum=line"),
+    NEEDS(LIGHT, "spectrum_data", "spectrum=data"),
     NEEDS_SET(LIGHT, "*", "intensity>0", "%.intensity=1"),
     FACT(LIGHT, "*", black_lamp),
     FACT(LIGHT, "polarised polarisation_deg", unpolarised),
@@ -159,7 +160,8 @@ static const needs_row rows[] = {
     FACT(BEAM, "profile", thin_beam),
     FACT(BEAM, "*", shows_no_light),
 
-    FACT(MATERIAL, "color", no_color_or_tint),
+    FACT(MATERIAL, "color color_data", no_color_or_tint),
+    FACT(MATERIAL, "color", by_data),
     FACT(MATERIAL, "emission ambient diffuse", is_black_surface),
     NEEDS_SET(MATERIAL, "ambient", "render.integrator!=path", "render.integrator=whitted"),
     NEEDS_SET(MATERIAL, "ambient", "background.ambient!=0,0,0", "background.ambient=1,1,1"),
@@ -176,12 +178,12 @@ static const needs_row rows[] = {
     FACT(MATERIAL, "extinction", nothing_reflected),
     FACT(MATERIAL,
          "extraordinary_ior optic_axis sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence "
-         "absorb_per_m absorb_spectrum scatter_per_m asymmetry tint_distance",
+         "absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance",
          opaque_rule),
     NEEDS_SET(MATERIAL, "film_ior", "film_thickness_nm>0", "%.film_thickness_nm=300"),
     FACT(MATERIAL,
          "extraordinary_ior optic_axis film_thickness_nm film_ior sheet sheet_axis sheet_pass sheet_block "
-         "retardance_deg birefringence absorb_per_m absorb_spectrum scatter_per_m asymmetry tint_distance",
+         "retardance_deg birefringence absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance",
          mirror_rule),
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.integrator=whitted"),
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.lighting=whitted"),
@@ -200,8 +202,9 @@ static const needs_row rows[] = {
     FACT(MATERIAL, "sheet_axis", axis_unseen),
     NEEDS_PATHS(MATERIAL, "roughness scatter_per_m asymmetry"),
     FACT(MATERIAL, "roughness", nothing_rough),
-    FACT(MATERIAL, "absorb_per_m absorb_spectrum scatter_per_m asymmetry tint_distance", unpassed),
+    FACT(MATERIAL, "absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance", unpassed),
     NEEDS(MATERIAL, "absorb_per_m", "absorb_spectrum=[]"),
+    FACT(MATERIAL, "absorb_per_m absorb_spectrum", by_data),
     NEEDS_SET(MATERIAL, "asymmetry", "scatter_per_m>0", "%.scatter_per_m=2"),
     NEEDS_SET(MATERIAL, "tint_distance", "color!=1,1,1", "%.color=0.9,0.7,0.5"),
     FACT(MATERIAL, "texture texture_size", no_texture),

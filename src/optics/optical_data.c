@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "optics/curve.h"
+#include "optics/spectrum.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -90,6 +91,42 @@ void optical_data_extremes(const optical_data *d, double *least, double *most)
     *least = (double)INFINITY, *most = -(double)INFINITY;
     for (size_t i = 0; i < d->count[0]; i++)
         *least = fmin(*least, d->point[2 * i + 1]), *most = fmax(*most, d->point[2 * i + 1]);
+}
+
+double optical_data_fraction(const void *d, double lambda_nm)
+{
+    return fmin(fmax(optical_data_at(d, lambda_nm), 0.0), 1.0);
+}
+
+double optical_data_emission(const void *d, double lambda_nm)
+{
+    double low_nm, high_nm;
+    optical_data_range(d, &low_nm, &high_nm);
+    return low_nm <= lambda_nm && lambda_nm <= high_nm ? fmax(optical_data_at(d, lambda_nm), 0.0) : 0.0;
+}
+
+double optical_data_coefficient(const void *d, double lambda_nm)
+{
+    return fmax(optical_data_at(d, lambda_nm), 0.0);
+}
+
+static double in_daylight(const void *d, double lambda_nm)
+{
+    return observer_d65(lambda_nm) * (d ? optical_data_fraction(d, lambda_nm) : 1.0);
+}
+
+/* Relative to the sums for white, so that a constant is grey. */
+void optical_data_rgb(const optical_data *d, double rgb[3])
+{
+    double xyz[3], of_white[3], white[3];
+    spectrum_xyz(in_daylight, d, xyz);
+    spectrum_xyz(in_daylight, NULL, of_white);
+    linear_srgb_to_xyz((const double[3]){1.0, 1.0, 1.0}, white);
+    for (int c = 0; c < 3; c++)
+        xyz[c] *= white[c] / of_white[c];
+    xyz_to_linear_srgb(xyz, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = fmin(fmax(rgb[c], 0.0), 1.0);
 }
 
 /* --- checks --- */

@@ -44,6 +44,15 @@ double optical_data_k(const optical_data *d, double lambda_nm);
 /* The least and the largest value of the points of the first curve; of a law at the ends of its range. */
 void optical_data_extremes(const optical_data *d, double *least, double *most);
 
+/* The same as spectra of optics/spectrum.h; the context is the data. A reflectance or transmittance: from 0 to 1. An
+ * emission: 0 beyond the range, and not negative. An absorption coefficient: not negative. */
+double optical_data_fraction(const void *d, double lambda_nm);
+double optical_data_emission(const void *d, double lambda_nm);
+double optical_data_coefficient(const void *d, double lambda_nm);
+/* The colour of a surface of this reflectance in daylight (D65), in linear sRGB within the gamut; a constant has its
+ * value in all channels. */
+void optical_data_rgb(const optical_data *d, double rgb[3]);
+
 uint64_t optical_data_hash(const optical_data *d, uint64_t hash);
 status optical_data_pack(const optical_data *d, pack_writer *to, diagnostic *why);
 status optical_data_unpack(pack_reader *from, const optical_data **out, diagnostic *why);

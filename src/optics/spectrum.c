@@ -150,23 +150,28 @@ double planck_relative(double lambda_nm, double temperature_k)
     return ratio2 * ratio2 * ratio * (exp_minus_one(x / REFERENCE_NM) / exp_minus_one(x / lambda_nm));
 }
 
-/* XYZ of Planck's spectrum; midpoints of 1 nm, whose error is below 1e-6 of Y. */
-static void black_body_xyz(double temperature_k, double xyz[3])
+/* The error of the midpoints is below 1e-6 of Y for Planck's spectrum. */
+void spectrum_xyz(spectrum_value *value, const void *context, double xyz[3])
 {
     xyz[0] = xyz[1] = xyz[2] = 0.0;
     for (int nm = OBSERVER_LOW_NM; nm < OBSERVER_HIGH_NM; nm++) {
-        const double lambda_nm = nm + 0.5, value = planck_relative(lambda_nm, temperature_k);
+        const double lambda_nm = nm + 0.5, here = value(context, lambda_nm);
         double weights[3];
         observer_weights(lambda_nm, weights);
         for (int c = 0; c < 3; c++)
-            xyz[c] += weights[c] * value / (OBSERVER_HIGH_NM - OBSERVER_LOW_NM);
+            xyz[c] += weights[c] * here / (OBSERVER_HIGH_NM - OBSERVER_LOW_NM);
     }
+}
+
+static double planck_at(const void *temperature_k, double lambda_nm)
+{
+    return planck_relative(lambda_nm, *(const double *)temperature_k);
 }
 
 double black_body_scale(double temperature_k)
 {
     double xyz[3];
-    black_body_xyz(temperature_k, xyz);
+    spectrum_xyz(planck_at, &temperature_k, xyz);
     return 1.0 / xyz[1];
 }
 
@@ -194,7 +199,8 @@ int lamp_lines(lamp_spectrum kind, double line_nm, spectral_line lines[LAMP_LINE
 #define COPY(list) copy_lines(list, (int)(sizeof list / sizeof list[0]), lines)
     switch (kind) {
     case LAMP_OF_COLOR:
-    case LAMP_BLACK_BODY: break;
+    case LAMP_BLACK_BODY:
+    case LAMP_DATA: break;
     case LAMP_SODIUM: return COPY(sodium);
     case LAMP_MERCURY: return COPY(mercury);
     case LAMP_HYDROGEN: return COPY(hydrogen);
@@ -215,20 +221,25 @@ static void into_gamut(double rgb[3])
     }
 }
 
+void light_rgb(const double xyz[3], double rgb[3])
+{
+    const double of_one[3] = {xyz[0] / xyz[1], 1.0, xyz[2] / xyz[1]};
+    xyz_to_linear_srgb(of_one, rgb);
+    into_gamut(rgb);
+}
+
 void lamp_rgb(lamp_spectrum kind, double temperature_k, double line_nm, double rgb[3])
 {
     spectral_line lines[LAMP_LINES_MAX];
     const int count = lamp_lines(kind, line_nm, lines);
     double xyz[3] = {0.0, 0.0, 0.0};
     if (count == 0)
-        black_body_xyz(temperature_k, xyz);
+        spectrum_xyz(planck_at, &temperature_k, xyz);
     for (int k = 0; k < count; k++) {
         double weights[3];
         observer_weights(lines[k].nm, weights);
         for (int c = 0; c < 3; c++)
             xyz[c] += lines[k].power * weights[c];
     }
-    const double of_one[3] = {xyz[0] / xyz[1], 1.0, xyz[2] / xyz[1]};
-    xyz_to_linear_srgb(of_one, rgb);
-    into_gamut(rgb);
+    light_rgb(xyz, rgb);
 }

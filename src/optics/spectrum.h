@@ -42,8 +42,19 @@ typedef enum lamp_spectrum {
     LAMP_SODIUM,
     LAMP_MERCURY,
     LAMP_HYDROGEN,
-    LAMP_LINE /* one line, of a laser */
+    LAMP_LINE, /* one line, of a laser */
+    LAMP_DATA  /* measured: optics/optical_data.h; it has no lines, and no colour here */
 } lamp_spectrum;
+
+/* A spectrum as a function: its value at a wavelength. */
+typedef double spectrum_value(const void *context, double lambda_nm);
+
+/* XYZ of a spectrum, with Y = 1 of a constant 1; midpoints of 1 nm. */
+void spectrum_xyz(spectrum_value *value, const void *context, double xyz[3]);
+
+/* Linear sRGB with Y = 1 of a light with this XYZ, whose Y is above 0. A colour outside the gamut, as of most lines, is
+ * mixed with white of the same Y until it is on the gamut's border. */
+void light_rgb(const double xyz[3], double rgb[3]);
 
 enum { LAMP_LINES_MAX = 8 };
 
@@ -66,6 +77,5 @@ double black_body_scale(double temperature_k);
  * Chemistry and Physics; real lamps differ with pressure and current. */
 int lamp_lines(lamp_spectrum kind, double line_nm, spectral_line lines[LAMP_LINES_MAX]);
 
-/* The colour of a lamp other than LAMP_OF_COLOR, in linear sRGB with Y = 1. A colour outside the gamut, as of most
- * lines, is mixed with white of the same Y until it is on the gamut's border. */
+/* The colour of a lamp other than LAMP_OF_COLOR and LAMP_DATA, by light_rgb. */
 void lamp_rgb(lamp_spectrum kind, double temperature_k, double line_nm, double rgb[3]);

@@ -13,6 +13,7 @@
 
 #include "base/file.h"
 #include "optics/media.h"
+#include "render_fixture.h"
 #include "scene/assets/optical_files.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"
@@ -358,6 +359,73 @@ static void k_makes_an_opaque_solid_a_metal(void **state)
     end(&f, s);
 }
 
+/* The image of `with`, in which files are named, and of `without`, which says the same in numbers. */
+static void same_image(const char *name, const char *content, const char *with, const char *without, double tolerance)
+{
+    static const char room[] = "camera: {position: [0, 0, -4], target: [0, 0, 0]}\nbackground: {color: [1, 1, 1]}\n";
+    static const char *const films[] = {"spectral", "rgb"};
+    for (size_t i = 0; i < COUNT(films); i++) {
+        folder f;
+        char text[1200];
+        snprintf(text, sizeof text, "render: {width: 12, height: 9, spectrum: %s}\n%s%s", films[i], room, with);
+        scene *a = scene_with(&f, name, content, text);
+        snprintf(text, sizeof text, "render: {width: 12, height: 9, spectrum: %s}\n%s%s", films[i], room, without);
+        scene *b = scene_from(text);
+        render_result *x = render(a), *y = render(b);
+        double brightest = 0.0;
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 12 * 9; k++) {
+                const double seen = film_value(x->img, k % 12, k / 12, c);
+                assert_near(seen, film_value(y->img, k % 12, k / 12, c), tolerance);
+                brightest = fmax(brightest, seen);
+            }
+        assert_true(brightest > 0.1);
+        render_result_destroy(x);
+        render_result_destroy(y);
+        scene_destroy(b);
+        end(&f, a);
+    }
+}
+
+/* A grey reflectance is that colour, also in percent; and as a tint. */
+static void a_reflectance_from_a_file_is_the_colour(void **state)
+{
+    (void)state;
+    static const char half[] = "380,50\n500,50\n780,50\n";
+    same_image("r.csv", half,
+               "lights: {l: {position: [2, 3, -4]}}\ndata: {d: {file: r.csv, scale: 0.01}}\n"
+               "solids: {a: {shape: sphere, diffuse: 0.8, color_data: d}}\n",
+               "lights: {l: {position: [2, 3, -4]}}\nsolids: {a: {shape: sphere, diffuse: 0.8, color: [.5, .5, .5]}}\n",
+               2e-5);
+    same_image("r.csv", half,
+               "data: {d: {file: r.csv, scale: 0.01}}\nsolids: {a: {shape: sphere, transparency: 1, color_data: d}}\n",
+               "solids: {a: {shape: sphere, transparency: 1, color: [0.5, 0.5, 0.5]}}\n", 2e-5);
+}
+
+static void absorption_from_a_file_is_that_of_a_list(void **state)
+{
+    (void)state;
+    same_image("a.csv", "nm,1/m\n400,0.1\n700,1.2\n",
+               "data: {d: {file: a.csv}}\nsolids: {a: {shape: sphere, transparency: 1, absorb_data: d}}\n",
+               "solids: {a: {shape: sphere, transparency: 1, absorb_spectrum: [400, 0.1, 700, 1.2]}}\n", 1e-12);
+}
+
+/* Planck's law in a table is a black body; the unit does not matter. */
+static void a_lamp_from_a_file_has_its_spectrum(void **state)
+{
+    (void)state;
+    char table[12000] = "nm\tW\n";
+    for (int nm = 370; nm <= 790; nm += 2)
+        snprintf(table + strlen(table), sizeof table - strlen(table), "%d\t%.9g\n", nm,
+                 7e3 * planck_relative(nm, 3200));
+    same_image("lamp.txt", table,
+               "data: {d: {file: lamp.txt}}\nlights: {l: {position: [2, 3, -4], spectrum: data, spectrum_data: d}}\n"
+               "solids: {a: {shape: sphere, diffuse: 0.8}}\n",
+               "lights: {l: {position: [2, 3, -4], spectrum: black_body, temperature_k: 3200}}\n"
+               "solids: {a: {shape: sphere, diffuse: 0.8}}\n",
+               1e-6);
+}
+
 /* Names as makers and shops write them. */
 static void usual_names_of_media_are_understood(void **state)
 {
@@ -382,6 +450,35 @@ static void usual_names_of_media_are_understood(void **state)
     scene_destroy(s);
 }
 
+/* What a file must hold for its use is known when it is read. */
+static void data_that_do_not_fit_their_use_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *content, *text, *what;
+    } cases[] = {
+        {"400,50\n700,60\n", "data: {d: {file: x.csv}}\nsolids: {a: {shape: sphere, color_data: d}}\n", "reach 60"},
+        {"800,1\n900,1\n", "data: {d: {file: x.csv}}\nlights: {l: {spectrum: data, spectrum_data: d}}\n", "no power"},
+        {"400,-1\n700,-2\n", "data: {d: {file: x.csv}}\nlights: {l: {spectrum: data, spectrum_data: d}}\n", "no power"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        folder f;
+        strcpy(f.path, "/tmp/cuvette-optical-XXXXXX");
+        assert_non_null(mkdtemp(f.path));
+        snprintf(f.file, sizeof f.file, "%s/x.csv", f.path);
+        assert_int_equal(file_write(f.file, cases[i].content, NULL), STATUS_OK);
+        char path[96];
+        snprintf(path, sizeof path, "%s/s.yaml", f.path);
+        scene *s;
+        diagnostic why = {.what = ""};
+        assert_int_equal(scene_read_text(path, cases[i].text, strlen(cases[i].text), &s, &why), STATUS_OK);
+        assert_int_equal(scene_load(s, &why), STATUS_OK);
+        assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
+        assert_non_null(strstr(why.what, cases[i].what));
+        end(&f, s);
+    }
+}
+
 static void wrong_media_of_files_are_refused(void **state)
 {
     (void)state;
@@ -393,6 +490,10 @@ static void wrong_media_of_files_are_refused(void **state)
         {"solids: {a: {shape: sphere, medium: {glass: X}}}\n", "a.medium is a map without a file"},
         {"solids: {a: {shape: sphere, medium: {file: a.yml, glas: X}}}\n", "unknown key 'glas'"},
         {"data: {d: {}}\n", "the data have no file"},
+        {"lights: {l: {spectrum: data}}\n", "spectrum_data is not set"},
+        {"lights: {l: {spectrum: data, spectrum_data: gone}}\n", "there is no data 'gone'"},
+        {"solids: {a: {shape: sphere, color_data: gone}}\n", "there is no data 'gone'"},
+        {"solids: {a: {shape: sphere, absorb_data: gone}}\n", "there is no data 'gone'"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         scene *s;
@@ -417,8 +518,12 @@ int main(void)
         cmocka_unit_test(wrong_files_are_refused_with_their_line),
         cmocka_unit_test(a_medium_is_read_from_a_file),
         cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
+        cmocka_unit_test(a_reflectance_from_a_file_is_the_colour),
+        cmocka_unit_test(absorption_from_a_file_is_that_of_a_list),
+        cmocka_unit_test(a_lamp_from_a_file_has_its_spectrum),
         cmocka_unit_test(usual_names_of_media_are_understood),
         cmocka_unit_test(wrong_media_of_files_are_refused),
+        cmocka_unit_test(data_that_do_not_fit_their_use_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

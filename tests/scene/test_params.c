@@ -441,12 +441,11 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"lens.visible=noo", "lens.visible: 'noo' is not one of the choices; give one of: off, on"},
         {"render.shadows=no", "render.shadows: 'no' is not one of the choices; give one of: off, opaque, attenuated"},
         {"glass.radius=2",
-         "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, emission, "
-         "reflectivity, transparency, ior, extinction, medium, coefficients, medium_data, extraordinary_ior, "
-         "optic_axis, "
-         "film_thickness_nm, film_ior, sheet, sheet_axis, sheet_pass, sheet_block, retardance_deg, birefringence, "
-         "roughness, absorb_per_m, absorb_spectrum, scatter_per_m, asymmetry, tint_distance, texture, texture_size, "
-         "alpha, ..."},
+         "glass has no parameter 'radius'; glass has color, color_data, ambient, diffuse, specular, shininess, "
+         "emission, reflectivity, transparency, ior, extinction, medium, coefficients, medium_data, extraordinary_ior, "
+         "optic_axis, film_thickness_nm, film_ior, sheet, sheet_axis, sheet_pass, sheet_block, retardance_deg, "
+         "birefringence, roughness, absorb_per_m, absorb_spectrum, absorb_data, scatter_per_m, asymmetry, "
+         "tint_distance, ..."},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},
         {"lamp.position.xy=2", "lamp.position has no element 'xy'; the elements are .x, .y and .z"},

@@ -164,9 +164,9 @@ static size_t candidates(const param *row, char text[][100], size_t room)
     case PARAM_PATH: snprintf(text[0], 100, "images/it's: a sky #1.png"); return 1;
     case PARAM_WORD:
         snprintf(text[0], 100,
-                 strcmp(row->name, "medium_data") == 0 ? "measured"
-                 : row->group == PARAM_MATERIAL        ? "bark"
-                                                       : "body");
+                 strstr(row->name, "_data")     ? "measured"
+                 : row->group == PARAM_MATERIAL ? "bark"
+                                                : "body");
         return 1;
     case PARAM_CHOICE: break;
     }

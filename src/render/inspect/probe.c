@@ -62,7 +62,7 @@ void probe_use_one_wavelength(probe *p)
     }
     for (int priority_index = 1; priority_index <= p->frame_plan->geometry->region_count; priority_index++) {
         const material *m = p->frame_plan->materials[priority_index];
-        if (m->absorb_spectrum.count == 0 && !p->spectral)
+        if (m->absorb_spectrum.count == 0 && !m->absorb_values && !p->spectral)
             continue;
         const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
         p->frame_plan->absorption[priority_index] = vec3_add(vec3_make(a, a, a), tint_of(p, m));

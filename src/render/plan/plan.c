@@ -215,6 +215,12 @@ static vec3 seen_color(const light *l)
     double rgb[3];
     if (l->spectrum == LAMP_OF_COLOR)
         return l->color;
+    if (l->spectrum == LAMP_DATA && l->emission_data) {
+        double xyz[3];
+        spectrum_xyz(optical_data_emission, l->emission_data, xyz);
+        light_rgb(xyz, rgb);
+        return vec3_make(rgb[0], rgb[1], rgb[2]);
+    }
     lamp_rgb((lamp_spectrum)l->spectrum, l->temperature_k, l->line_nm, rgb);
     return vec3_make(rgb[0], rgb[1], rgb[2]);
 }
@@ -307,18 +313,26 @@ static status laws_of(const scene *s, index_law *laws, diagnostic *why)
     return code;
 }
 
-/* The material that a solid is rendered with; for a mirror, an opaque substitute. */
+/* The material that a solid is rendered with; for a mirror an opaque substitute, and with measured values one of their
+ * colour, which spectra have by wavelength (render/plan/spectra.h). */
 static const material *material_of(const scene *s, plan *p, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (!material_is_mirror(m))
+    if (!material_is_mirror(m) && !m->color_values)
         return m;
-    material *mirror = &p->mirrors[solid_index];
-    *mirror = *m;
+    material *other = &p->substitutes[solid_index];
+    *other = *m;
+    if (m->color_values) {
+        double rgb[3];
+        optical_data_rgb(m->color_values, rgb);
+        other->color = vec3_make(rgb[0], rgb[1], rgb[2]);
+    }
+    if (!material_is_mirror(m))
+        return other;
     const double both = m->reflectivity + m->transparency;
-    mirror->reflectivity = scene_has_constant_weights(&s->render) && both < 1.0 ? both : 1.0;
-    mirror->transparency = mirror->extinction = mirror->film_thickness_nm = 0.0;
-    return mirror;
+    other->reflectivity = scene_has_constant_weights(&s->render) && both < 1.0 ? both : 1.0;
+    other->transparency = other->extinction = other->film_thickness_nm = 0.0;
+    return other;
 }
 
 /* False when out of memory. */
@@ -362,9 +376,9 @@ static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
     p->laws = large_calloc(priority_indices, sizeof *p->laws);
     p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
     p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
-    p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
+    p->substitutes = calloc(s->solid_count + 1, sizeof *p->substitutes);
     const bool room =
-        shared && p->mirrors && p->materials && p->ior && p->laws && p->absorption && p->shading_materials;
+        shared && p->substitutes && p->materials && p->ior && p->laws && p->absorption && p->shading_materials;
     const status code = room ? fill_materials(s, shared, p, why) : out_of_memory(why);
     free(shared);
     TRY(code);
@@ -495,7 +509,7 @@ void plan_destroy(plan *p)
         free(p->shadow_transmittance[i]);
     free(p->shadow_transmittance);
     free(p->materials);
-    free(p->mirrors);
+    free(p->substitutes);
     free(p->ior);
     free(p->laws);
     free(p->solid_laws);

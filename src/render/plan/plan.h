@@ -73,8 +73,8 @@ typedef struct plan {
     double **shadow_transmittance; /* by solid: of its faces by slot, or NULL */
     size_t solid_count;
     mesh_report meshes;
-    material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
-    double *ior;       /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */
+    material *substitutes;  /* by solid: see material_of */
+    double *ior;            /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */
     index_law *solid_laws;  /* by solid, then the surrounding medium's */
     const index_law **laws; /* by priority index: the source of ior; in solid_laws */
     vec3 *absorption;       /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */

@@ -68,8 +68,8 @@ static bool solid_shines(const scene *s, const solid *one)
 
 static bool lamp_has_continuum(const light *l)
 {
-    return l->intensity > 0.0 &&
-           (l->spectrum == LAMP_BLACK_BODY || (l->spectrum == LAMP_OF_COLOR && !is_black(l->color)));
+    return l->intensity > 0.0 && (l->spectrum == LAMP_BLACK_BODY || l->spectrum == LAMP_DATA ||
+                                  (l->spectrum == LAMP_OF_COLOR && !is_black(l->color)));
 }
 
 /* Whether anything in the scene emits light other than lines. */
@@ -213,7 +213,9 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
         b.absorption = surrounding_absorption_at(&l->s->background, lambda_nm) * l->s->render.unit_m;
         return b;
     }
-    b.color = upsampled_reflectance(&l->color[priority_index], lambda_nm);
+    const material *m = l->materials[priority_index];
+    b.color = m->color_values ? optical_data_fraction(m->color_values, lambda_nm)
+                              : upsampled_reflectance(&l->color[priority_index], lambda_nm);
     b.checker_color = upsampled_reflectance(&l->checker_color[priority_index], lambda_nm);
     b.absorption = material_absorption_at(l->materials[priority_index], lambda_nm) * l->s->render.unit_m;
     if (material_tints(l->materials[priority_index]))
@@ -265,11 +267,16 @@ static void fill_light(const upsampled_scene *l, spectra *p, size_t lamp)
     const int count = spectral_lines_of(one, lines);
     const double of_body =
         one->spectrum == LAMP_BLACK_BODY ? one->intensity * black_body_scale(one->temperature_k) : 0.0;
+    double xyz[3] = {0.0, 1.0, 0.0};
+    const optical_data *of = one->spectrum == LAMP_DATA ? one->emission_data : NULL;
+    if (of)
+        spectrum_xyz(optical_data_emission, of, xyz);
     for (size_t i = 0; i < SPECTRA_COUNT; i++) {
         const double lambda_nm = spectra_lambda((int64_t)i);
         p->lights[i * p->light_count + lamp] =
             one->spectrum == LAMP_OF_COLOR     ? upsampled_emission(&l->light[lamp], lambda_nm)
             : one->spectrum == LAMP_BLACK_BODY ? of_body * planck_relative(lambda_nm, one->temperature_k)
+            : of                               ? one->intensity / xyz[1] * optical_data_emission(of, lambda_nm)
                                                : 0.0;
     }
     for (int k = 0; k < count; k++)

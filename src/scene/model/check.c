@@ -83,6 +83,35 @@ static status check_render(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
+/* Reports that what the solid or light refers to does not exist. */
+static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
+{
+    char remedy[SCENE_NAME_MAX + 80];
+    object_remedy(s, group, name, remedy, sizeof remedy);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, param_group_name(group),
+                    name);
+}
+
+static status check_lamp_data(const scene *s, const light *lamp, diagnostic *why)
+{
+    if (lamp->spectrum != LAMP_DATA && !lamp->spectrum_data[0])
+        return STATUS_OK;
+    if (!lamp->spectrum_data[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set spectrum_data to the name of one of the scene's data",
+                        "%.80s: its spectrum is data, but spectrum_data is not set", lamp->name);
+    if (object_find(s, PARAM_DATA, lamp->spectrum_data) < 0)
+        return unknown(s, PARAM_DATA, lamp->name, lamp->spectrum_data, why);
+    double xyz[3] = {0.0, 1.0, 0.0};
+    if (lamp->emission_data && optical_data_has_first(lamp->emission_data))
+        spectrum_xyz(optical_data_emission, lamp->emission_data, xyz);
+    else if (lamp->emission_data)
+        xyz[1] = 0.0;
+    return xyz[1] > 0.0
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "choose a table of a wavelength and a power",
+                          "%.80s: the data %.80s have no power from 380 to 780 nm", lamp->name, lamp->spectrum_data);
+}
+
 static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
     if ((integrator_traits_of(&s->render)->by_chance || scene_has_soft_shadows(&s->render)) &&
@@ -92,6 +121,7 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
                             ? "set 'reach', the distance at which the intensity applies, or set width to 0"
                             : "set 'reach', the distance at which the intensity applies, or set radius to 0",
                         "%.80s: a light with a size falls off with distance, and its reach is 0", lamp->name);
+    TRY(check_lamp_data(s, lamp, why));
     const vec3 axis = vec3_sub(lamp->target, lamp->position);
     if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
@@ -194,15 +224,6 @@ static status check_data(const data_entry *d, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Reports that the texture or mesh to which the solid refers does not exist. */
-static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
-{
-    char remedy[SCENE_NAME_MAX + 80];
-    object_remedy(s, group, name, remedy, sizeof remedy);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: there is no %s '%.80s'", owner, param_group_name(group),
-                    name);
-}
-
 /* A transparent solid needs an inside, which an open mesh does not have. */
 static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
@@ -248,6 +269,30 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
                     by_face ? "materials by face" : "textures");
 }
 
+/* A fraction of light above 1 is probably in percent; a little more is the noise of a measurement. */
+#define FRACTION_MOST 1.05
+static status check_data_of(const scene *s, const solid *owner, diagnostic *why)
+{
+    const material *m = &owner->surface;
+    const char *const names[] = {m->medium_data, m->color_data, m->absorb_data};
+    const optical_data *const values[] = {NULL, m->color_values, m->absorb_values}; /* those of curves */
+    double least, most = 0.0;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (names[i][0] && object_find(s, PARAM_DATA, names[i]) < 0)
+            return unknown(s, PARAM_DATA, owner->name, names[i], why);
+    for (size_t i = 1; i < sizeof names / sizeof *names; i++)
+        if (values[i] && !optical_data_has_first(values[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "choose a table of a wavelength and a value",
+                            "%.80s: the data %.80s have only k", owner->name, names[i]);
+    if (m->color_values)
+        optical_data_extremes(m->color_values, &least, &most);
+    if (most > FRACTION_MOST)
+        return diagnose(why, STATUS_BAD_INPUT, "if it is in percent, set its scale to 0.01",
+                        "%.80s: the data %.80s reach %g, but a surface reflects at most 1", owner->name, m->color_data,
+                        most);
+    return STATUS_OK;
+}
+
 static status check_points(const scene *s, const solid *owner, diagnostic *why)
 {
     const mesh_entry *points = scene_points_of(s, owner);
@@ -265,8 +310,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
-    if (owner->surface.medium_data[0] && object_find(s, PARAM_DATA, owner->surface.medium_data) < 0)
-        return unknown(s, PARAM_DATA, owner->name, owner->surface.medium_data, why);
+    TRY(check_data_of(s, owner, why));
     if (owner->points[0])
         TRY(check_points(s, owner, why));
     if (!shape_of(&owner->shape)->triangles)

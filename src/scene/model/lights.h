@@ -3,7 +3,9 @@
 #pragma once
 
 #include "base/vec3.h"
+#include "optics/optical_data.h"
 #include "optics/spectrum.h"
+#include "scene/model/material.h"
 #include "scene/model/render_settings.h"
 #include <math.h>
 #include <stdbool.h>
@@ -27,12 +29,14 @@ typedef struct light {
     double half_angle_deg; /* of a spotlight, from its axis */
     vec3 color;
     double intensity;
-    int64_t spectrum;                   /* lamp_spectrum */
-    double temperature_k;               /* of a black body */
-    double line_nm;                     /* of a lamp of one line */
-    double radius;                      /* of an emitting sphere or disc; 0 = a point light */
-    double width, height, roll_deg;     /* of a rectangle */
-    double angular_diameter_deg;        /* of a sun; 0: all its light is parallel */
+    int64_t spectrum;                       /* lamp_spectrum */
+    char spectrum_data[SCENE_NAME_MAX + 1]; /* of LAMP_DATA; "" for none */
+    const optical_data *emission_data;      /* as a material's index_data */
+    double temperature_k;                   /* of a black body */
+    double line_nm;                         /* of a lamp of one line */
+    double radius;                          /* of an emitting sphere or disc; 0 = a point light */
+    double width, height, roll_deg;         /* of a rectangle */
+    double angular_diameter_deg;            /* of a sun; 0: all its light is parallel */
     double polarised, polarisation_deg; /* degree of linear polarisation, and the field's angle from the horizontal */
     double reach; /* the distance at which the intensity applies, with inverse square falloff; 0 = no falloff */
 } light;

@@ -282,7 +282,8 @@ static double absorption_of_k(const material *m, double lambda_nm)
 
 double material_absorption_at(const material *m, double lambda_nm)
 {
-    const double own = m->absorb_spectrum.count > 0
+    const double own = m->absorb_values ? optical_data_coefficient(m->absorb_values, lambda_nm)
+                       : m->absorb_spectrum.count > 0
                            ? interpolate(m->absorb_spectrum.value, m->absorb_spectrum.count, lambda_nm)
                            : between_channels(m->absorb_per_m, lambda_nm);
     return own + absorption_of_k(m, lambda_nm);
@@ -296,7 +297,7 @@ double surrounding_absorption_at(const background *b, double lambda_nm)
 vec3 material_absorption(const material *m)
 {
     const double channel_nm[] = CHANNEL_LAMBDA_NM;
-    if (m->absorb_spectrum.count == 0 && !has_k(m))
+    if (m->absorb_spectrum.count == 0 && !m->absorb_values && !has_k(m))
         return m->absorb_per_m;
     return vec3_make(material_absorption_at(m, channel_nm[0]), material_absorption_at(m, channel_nm[1]),
                      material_absorption_at(m, channel_nm[2]));
@@ -317,12 +318,17 @@ bool material_absorbs(const material *m)
     for (int64_t i = 1; i < m->absorb_spectrum.count; i += 2)
         if (m->absorb_spectrum.value[i] > 0.0)
             return true;
+    if (m->absorb_values) {
+        double least, most;
+        optical_data_extremes(m->absorb_values, &least, &most);
+        return most > 0.0;
+    }
     return (m->transparency > 0.0 && has_k(m)) || (m->absorb_spectrum.count == 0 && absorbs(m->absorb_per_m));
 }
 
 bool material_tints(const material *m)
 {
-    return !material_is_opaque(m) && (m->color.x < 1.0 || m->color.y < 1.0 || m->color.z < 1.0);
+    return !material_is_opaque(m) && (m->color_values || m->color.x < 1.0 || m->color.y < 1.0 || m->color.z < 1.0);
 }
 
 double material_tint(const material *m, double value)

@@ -320,8 +320,7 @@ static void store(scene *s, const param_place *at, param_value value)
     for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
-    if (at->object_group == PARAM_DATA ||
-        (row->group == PARAM_MATERIAL && row->type == PARAM_WORD && s->data_count > 0))
+    if (at->object_group == PARAM_DATA || (row->type == PARAM_WORD && s->data_count > 0))
         scene_follow_data(s);
 }
 

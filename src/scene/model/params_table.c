@@ -42,7 +42,7 @@ static const char *const sheet_words[] = {"none", "polariser", "circular_left", 
 static const char *const tone_words[] = {"none", "reinhard", "aces", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", "rectangle", "sun", NULL};
 /* as enum lamp_spectrum */
-static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", NULL};
+static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", "data", NULL};
 static const char *const profile_words[] = {"uniform", "gaussian", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "image", "rain", "cie", NULL};
@@ -407,7 +407,11 @@ static const param table[] = {
          "multiplies the light's colour: at all distances, or, if reach is set, at that distance"),
     CHOICE(PARAM_LIGHT, light, spectrum, lamp_words, "color",
            "spectrum of the light: smooth, from its colour (white: D65); of a black body; the lines of sodium, mercury "
-           "or hydrogen; or one line; all but the first have the brightness of white and replace the colour"),
+           "or hydrogen; one line; or of a file (spectrum_data); all but the first have the brightness of white and "
+           "replace the colour"),
+    {PARAM_LIGHT, "spectrum_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the spectral power of the light by wavelength, in any unit, if spectrum is data", NULL,
+     OF(light, spectrum_data)},
     REAL(PARAM_LIGHT, light, temperature_k, "K", LAMP_COLDEST_K, LAMP_HOTTEST_K, "2856",
          "temperature of a black body; 2856: CIE illuminant A, an incandescent lamp"),
     REAL(PARAM_LIGHT, light, line_nm, "nm", OBSERVER_LOW_NM, OBSERVER_HIGH_NM, "632.8",
@@ -467,6 +471,10 @@ static const param table[] = {
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
           "linear colour of ambient, diffuse and emitted light; in a transparent solid: transmittance over "
           "tint_distance"),
+    {PARAM_MATERIAL, "color_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the reflectance of the surface by wavelength, 0 to 1, or of a transparent solid the transmittance over "
+     "tint_distance; replaces color",
+     NULL, OF(material, color_data)},
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of the Phong model"),
     REAL(PARAM_MATERIAL, material, diffuse, "", 0, 1, "0", "k_d of the Phong model"),
     REAL(PARAM_MATERIAL, material, specular, "", 0, 1, "0", "k_s of the Phong model"),
@@ -529,6 +537,9 @@ static const param table[] = {
         "Beer-Lambert absorption coefficient by channel, 1/m", NULL, OF(material, absorb_per_m), COEFFICIENT),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
+    {PARAM_MATERIAL, "absorb_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the Beer-Lambert absorption coefficient by wavelength, 1/m; replaces absorb_per_m and absorb_spectrum",
+     NULL, OF(material, absorb_data)},
     REAL(PARAM_MATERIAL, material, scatter_per_m, "1/m", 0, 1e9, "0",
          "scattering coefficient of a transparent solid's medium (milk, fog), for integrator path: over a length d, "
          "exp(-scatter_per_m d) of the light is not scattered; 0: clear"),

@@ -183,11 +183,19 @@ const texture_entry *scene_find_texture(const scene *s, const char *name)
     return at < 0 ? NULL : &s->textures[at];
 }
 
+static const optical_data *data_named(const scene *s, const char *name)
+{
+    const int at = name[0] ? object_find(s, PARAM_DATA, name) : -1;
+    return at < 0 ? NULL : s->data[at].data;
+}
+
 static void follow_data(const scene *s, material *m)
 {
     const int at = m->medium_data[0] ? object_find(s, PARAM_DATA, m->medium_data) : -1;
-    m->index_data = at < 0 ? NULL : s->data[at].data;
+    m->index_data = data_named(s, m->medium_data);
     m->index_in_air = at >= 0 && s->data[at].relative_to == DATA_IN_AIR;
+    m->color_values = data_named(s, m->color_data);
+    m->absorb_values = data_named(s, m->absorb_data);
 }
 
 void scene_follow_data(scene *s)
@@ -196,6 +204,8 @@ void scene_follow_data(scene *s)
         follow_data(s, &s->materials[i].value);
     for (size_t i = 0; i < s->solid_count; i++)
         follow_data(s, &s->solids[i].surface);
+    for (size_t i = 0; i < s->light_count; i++)
+        s->lights[i].emission_data = data_named(s, s->lights[i].spectrum_data);
 }
 
 const light *scene_sun(const scene *s)

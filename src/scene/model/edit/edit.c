@@ -216,15 +216,33 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
     return STATUS_OK;
 }
 
+/* The names of data to which a material refers. */
+enum { MATERIAL_DATA_NAMES = 3 };
+static char *data_name(material *m, int i)
+{
+    return i == 0 ? m->medium_data : i == 1 ? m->color_data : m->absorb_data;
+}
+
+static bool refers(material *m, const char *name)
+{
+    bool any = false;
+    for (int i = 0; i < MATERIAL_DATA_NAMES; i++)
+        any |= strcmp(data_name(m, i), name) == 0;
+    return any;
+}
+
 static status remove_data(scene *s, size_t index, diagnostic *why)
 {
     const data_entry *d = &s->data[index];
     for (size_t i = 0; i < s->material_count; i++)
-        if (strcmp(s->materials[i].value.medium_data, d->name) == 0)
+        if (refers(&s->materials[i].value, d->name))
             return in_use("data file", d->name, s->materials[i].name, why);
     for (size_t i = 0; i < s->solid_count; i++)
-        if (strcmp(s->solids[i].surface.medium_data, d->name) == 0)
+        if (refers(&s->solids[i].surface, d->name))
             return in_use("data file", d->name, s->solids[i].name, why);
+    for (size_t i = 0; i < s->light_count; i++)
+        if (strcmp(s->lights[i].spectrum_data, d->name) == 0)
+            return in_use("data file", d->name, s->lights[i].name, why);
     object_remove(s, PARAM_DATA, index);
     return STATUS_OK;
 }
@@ -253,6 +271,13 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     return STATUS_FAILURE;
 }
 
+static void rename_data(material *m, const char *from, const char *to)
+{
+    for (int i = 0; i < MATERIAL_DATA_NAMES; i++)
+        if (strcmp(data_name(m, i), from) == 0)
+            strcpy(data_name(m, i), to);
+}
+
 /* Renames the references of solids and materials to a mesh, a texture or data. */
 static void follow_name(scene *s, const param_place *at, const char *from, const char *to)
 {
@@ -264,12 +289,14 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
             strcpy(owner->points, to);
         if (at->object_group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
-        if (at->object_group == PARAM_DATA && strcmp(owner->surface.medium_data, from) == 0)
-            strcpy(owner->surface.medium_data, to);
+        if (at->object_group == PARAM_DATA)
+            rename_data(&owner->surface, from, to);
     }
     for (size_t i = 0; at->object_group == PARAM_DATA && i < s->material_count; i++)
-        if (strcmp(s->materials[i].value.medium_data, from) == 0)
-            strcpy(s->materials[i].value.medium_data, to);
+        rename_data(&s->materials[i].value, from, to);
+    for (size_t i = 0; at->object_group == PARAM_DATA && i < s->light_count; i++)
+        if (strcmp(s->lights[i].spectrum_data, from) == 0)
+            strcpy(s->lights[i].spectrum_data, to);
     for (size_t i = 0; at->object_group == PARAM_TEXTURE && i < s->material_count; i++)
         if (strcmp(s->materials[i].value.texture, from) == 0)
             strcpy(s->materials[i].value.texture, to);
