@@ -234,7 +234,8 @@ static void numbers_of(const obj_file *f, obj_corner c, double numbers[JOIN_NUMB
     static const double white[3] = {1.0, 1.0, 1.0};
     const obj_part *all = &f->parts[0];
     const size_t place = (size_t)c.place - 1;
-    memset(numbers, 0, JOIN_NUMBERS * sizeof *numbers);
+    memset(numbers + 3, 0, (JOIN_COLOR - 3) * sizeof *numbers);
+    memset(numbers + JOIN_COLOR, 0, (JOIN_NUMBERS - JOIN_COLOR) * sizeof *numbers);
     for (int k = 0; k < 3; k++) /* + 0.0: -0 becomes 0 */
         numbers[k] = all->places[place][k] + 0.0;
     for (int k = 0; c.normal && k < 3; k++)

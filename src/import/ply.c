@@ -544,14 +544,14 @@ static status read_body(ply *p)
 
 /* --- the triangles --- */
 
-static status read_column(ply *p, size_t i, int k, double *number)
+static inline status read_column(ply *p, size_t i, int k, double *number)
 {
     const ply_column *c = &p->columns[k];
     const char *at = p->base + i * p->stride + c->offset;
     *number = 0.0;
     if (c->type == PLY_NONE)
         return STATUS_OK;
-    *number = scalar(at, c->type, p->in_place && p->swap) / full_value(k, c->type);
+    *number = scalar(at, c->type, p->in_place && p->swap);
     if (!p->in_place || fabs(*number) <= MESH_WIRE_FAR)
         return STATUS_OK;
     p->text.at = at;
@@ -568,11 +568,14 @@ static status vertex_numbers(ply *p, size_t i, double numbers[JOIN_NUMBERS])
         memset(numbers + JOIN_COLOR, 0, (JOIN_NUMBERS - JOIN_COLOR) * sizeof *numbers);
         return STATUS_OK;
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         TRY(read_column(p, i, JOIN_COLOR + c, &color[c]));
+        color[c] /= full_value(JOIN_COLOR + c, p->columns[JOIN_COLOR + c].type);
+    }
     join_color(p->flat, color, numbers);
     TRY(read_column(p, i, PLY_ALPHA, &alpha));
-    p->clear |= p->columns[PLY_ALPHA].type != PLY_NONE && alpha < 1.0;
+    const ply_type type = p->columns[PLY_ALPHA].type;
+    p->clear |= type != PLY_NONE && alpha < full_value(PLY_ALPHA, type);
     return STATUS_OK;
 }
 
