@@ -5,7 +5,6 @@
 #include "base/status.h"
 #include "image/codec.h"
 #include "image/image.h"
-#include "image/png_bands.h"
 #include <errno.h>
 #include <png.h>
 #include <stdbool.h>

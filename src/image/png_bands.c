@@ -1,5 +1,5 @@
 /* Conversion, filtering and compression of the rows of a PNG in bands, by a thread team. */
-#include "image/png_bands.h"
+#include "image/codec.h"
 
 #include "base/cancel.h"
 #include "base/thread_team.h"

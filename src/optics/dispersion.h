@@ -1,5 +1,5 @@
 /* Dispersion: the refractive index as a function of the wavelength, by the formulas in which measurements and glass
- * catalogues are published. Ownership: a law is a plain value. Errors: only dispersion_check reports errors; the other
+ * catalogues are published, and by curves through points. Ownership: a law is a plain value. Errors: only dispersion_check reports errors; the other
  * functions are pure, cannot fail, and require a law that passes dispersion_check. Wavelengths are in nm; L in the
  * formulas is the wavelength in um. It is the wavelength in air, as in a catalogue; the wavelength in vacuum, 0.03%
  * longer, would change no index of the catalogue by more than 1e-4. */
@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 #include <stdbool.h>
+#include <stddef.h>
 
 /* Fraunhofer's lines in air, nm: of helium, of hydrogen, and the mean of the two sodium lines. Schott, TIE-29,
  * Refractive Index and Dispersion. */
@@ -29,7 +30,7 @@ typedef enum dispersion_kind {
     DISPERSION_CAUCHY,            /* n = A + B / L^2 + C / L^4 + ...; A B C ... */
     DISPERSION_GAS,               /* n - 1 = sum B / (C - L^-2), both in um^-2; B C B C ... */
     DISPERSION_TABLE,             /* linear, constant beyond the ends; lambda_nm n lambda_nm n ... */
-    DISPERSION_CURVE,             /* the same by a monotone cubic, curve.h */
+    DISPERSION_CURVE,             /* the same by curve_at */
     DISPERSION_SELLMEIER_FROM,    /* n^2 = 1 + a0 + sum B L^2 / (L^2 - C), C in um^2; a0 B C B C ... */
     DISPERSION_GAS_FROM,          /* n - 1 = a0 + sum B / (C - L^-2), both in um^-2; a0 B C B C ... */
     DISPERSION_TWO_RESONANCES,    /* n^2 = a0 + two of a L^p / (L^2 - b^q) + sum a L^p; a0 a p b q a p b q a p ... */
@@ -67,3 +68,9 @@ bool dispersion_covers(const dispersion *law, double low_nm, double high_nm);
 
 /* Abbe number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */
 double dispersion_abbe_number(const dispersion *law);
+
+/* A function of the wavelength by its values at some: a cubic between each two, and constant beyond the first and the
+ * last. Its slope at a point is that of the parabola through the point and its neighbours, limited so that the curve
+ * is monotone wherever the values are (de Boor and Swartz, Piecewise monotone interpolation, J. Approx. Theory 21, 411
+ * (1977)): it never leaves the range of its two values. point: count >= 1 pairs x0 y0 x1 y1 ..., ascending in x. */
+double curve_at(const double *point, size_t count, double x);

@@ -2,7 +2,6 @@
 #include "optics/optical_data.h"
 
 #include "base/hash.h"
-#include "optics/curve.h"
 #include "optics/spectrum.h"
 #include <math.h>
 #include <stdatomic.h>

@@ -11,7 +11,7 @@
 
 typedef struct optical_data optical_data;
 
-/* Points of a curve (optics/curve.h): pairs of a wavelength and a value. */
+/* Points of a curve (curve_at, optics/dispersion.h): pairs of a wavelength and a value. */
 typedef struct optical_curve {
     const double *point; /* NULL: none */
     size_t count;

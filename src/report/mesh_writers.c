@@ -94,13 +94,14 @@ static json_t *hole_json(const mesh *m)
 
 json_t *mesh_rows_json(const mesh *m, const char *refusal)
 {
-    return json_pack(
-        "{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:I,s:s?,s:b,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
-        (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low", vector_json(m->bounds.low),
-        "high", vector_json(m->bounds.high), "area", json_of_real(mesh_area(m)), "closed", m->closed, "volume",
-        json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "shells",
-        (json_int_t)m->shell_count, "refusal", refusal, "normals", m->normals != NULL, "texture_coordinates",
-        m->uvs != NULL, "colors", m->colors != NULL, "single", m->single, "materials", m->slot_count, "bytes", (json_int_t)memory_bytes(m));
+    return json_pack("{s:i,s:I,s:I,s:o,s:o,s:o,s:b,s:o,s:o,s:I,s:s?,s:b,s:b,s:b,s:b,s:i,s:I}", "schema", 1, "triangles",
+                     (json_int_t)m->triangle_count, "vertices", (json_int_t)m->vertex_count, "low",
+                     vector_json(m->bounds.low), "high", vector_json(m->bounds.high), "area",
+                     json_of_real(mesh_area(m)), "closed", m->closed, "volume",
+                     json_of_real(m->closed ? mesh_volume(m) : (double)NAN), "hole", hole_json(m), "shells",
+                     (json_int_t)m->shell_count, "refusal", refusal, "normals", m->normals != NULL,
+                     "texture_coordinates", m->uvs != NULL, "colors", m->colors != NULL, "single", m->single,
+                     "materials", m->slot_count, "bytes", (json_int_t)memory_bytes(m));
 }
 
 /* --- formats of other programs --- */

@@ -9,7 +9,6 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "optics/curve.h"
 #include "optics/media.h"
 #include "optics/optical_data.h"
 #include "random_stream.h"

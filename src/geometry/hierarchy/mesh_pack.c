@@ -318,8 +318,7 @@ static bool within(const double *values, int count)
 
 static status check_head(const mesh_head *h, const pack_reader *from, diagnostic *why)
 {
-    const uint64_t flags =
-        (uint64_t)(h->normals | h->uvs | h->colors | h->slots | h->closed | h->crowded | h->single);
+    const uint64_t flags = (uint64_t)(h->normals | h->uvs | h->colors | h->slots | h->closed | h->crowded | h->single);
     if (flags > 1 || h->slot_count < 1 || h->slot_count > MESH_SLOTS_MAX || h->hierarchies > HIERARCHY_KIND_COUNT)
         return pack_damaged(why, "the head of a mesh");
     if (!pack_holds(from, h->vertices, sizeof(vec3)) || !pack_holds(from, h->triangles, sizeof(mesh_triangle)))

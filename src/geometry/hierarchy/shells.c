@@ -262,8 +262,7 @@ static status find_windings(shell_room *r, diagnostic *why)
             ISA_BASE_OF(hierarchy_kernels).all(r->tree, &ray, wind, r);
             for (size_t p = begin; p < end; p++) {
                 const int turned = r->shells[r->pairs[p].other].volume6 < 0.0 ? -1 : 1;
-                if (!r->pairs[p].cross && r->pairs[p].winding != 0 &&
-                    r->pairs[p].winding != turned)
+                if (!r->pairs[p].cross && r->pairs[p].winding != 0 && r->pairs[p].winding != turned)
                     bad = &r->pairs[p];
             }
         }

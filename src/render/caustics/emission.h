@@ -16,7 +16,9 @@
 #pragma once
 
 #include "base/status.h"
+#include "render/photons/photon_map.h"
 #include "render/plan/plan.h"
+#include "render/tracer/integrator.h"
 
 typedef struct emission emission;
 
@@ -67,3 +69,19 @@ unit_pair emission_roulette(const emission *e, int64_t i, int depth);
 unit_pair emission_facet(const emission *e, int64_t i, int depth);
 /* Two random numbers, and a third in *chance, for light of further facets. */
 unit_pair emission_further(const emission *e, int64_t i, int depth, double *chance);
+
+/* --- photon_integrator.c: the integrator that traces photons, as a separate frame (render/tracer/integrator.h) --- */
+
+/* The state of the photons' frame. */
+typedef struct photon_frame {
+    const emission *from;
+    atomic_int_fast64_t *arrived; /* photons at matte surfaces, by target */
+    bool is_pilot;                /* a pilot only counts photons */
+    atomic_bool out_of_memory;
+} photon_frame;
+
+extern const integrator integrator_of_photons;
+
+/* Enqueues photons first .. end - 1 in the tracer's first queue, which must have room; found: the list to which
+ * arriving photons are added from now on. */
+void photon_integrator_emit(tracer *t, int64_t first, int64_t end, photon_list *found);

@@ -3,7 +3,7 @@
  * reversed path: the transmittance between two ends does not depend on the direction, and a linearly polarised lamp
  * acts as the analyser that transmits its field (Stokes and Helmholtz reversion; Chandrasekhar, Radiative Transfer,
  * 1950, section 13). */
-#include "render/caustics/photon_integrator.h"
+#include "render/caustics/emission.h"
 
 #include "render/shade/layered.h"
 #include "render/shade/rough.h"

@@ -2,7 +2,7 @@
 #include "render/frame/caustics.h"
 
 #include "base/cancel.h"
-#include "render/caustics/photon_integrator.h"
+#include "render/caustics/emission.h"
 #include "render/frame/tracers.h"
 
 #include <stdlib.h>

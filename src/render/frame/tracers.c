@@ -13,6 +13,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* --- the table of integrators, from INTEGRATORS (scene/model/integrators.h) --- */
+
+#define DECLARE(name, word, ...) extern const integrator integrator_of_##word;
+INTEGRATORS(DECLARE)
+
+const integrator *integrator_for(const render_settings *r)
+{
+#define ADDRESS(name, word, ...) &integrator_of_##word,
+    static const integrator *const table[] = {INTEGRATORS(ADDRESS)};
+    return table[r->integrator];
+}
+#undef DECLARE
+#undef ADDRESS
+
 tracer *tracer_create(isa level)
 {
     static const geometry_kernels *const geometry[ISA_COUNT] = ISA_ARRAY(geometry_kernels);

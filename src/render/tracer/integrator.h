@@ -93,7 +93,7 @@ typedef struct integrator {
     void (*shade)(tracer *t, int depth, int priority_index);
 } integrator;
 
-/* The integrator of render.integrator: render/integrators/table.c. */
+/* The integrator of render.integrator: render/frame/tracers.c. */
 const integrator *integrator_for(const render_settings *r);
 
 /* Whitted's recursion for all depth limits at once: the film of each limit without a frame for each.

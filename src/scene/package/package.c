@@ -8,7 +8,6 @@
 #include "scene/model/face_materials.h"
 #include "scene/model/integrators.h"
 #include "scene/model/scene.h"
-#include "scene/package/package_scene.h"
 
 #include <stdlib.h>
 #include <string.h>

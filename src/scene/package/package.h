@@ -31,3 +31,9 @@ status scene_unpack(const void *bytes, size_t size, scene **out, diagnostic *why
  * sender should collect them. */
 status scene_pack_to(const scene *s, pack_write *write, void *context, diagnostic *why);
 status scene_unpack_from(pack_read *read, void *context, scene **out, diagnostic *why);
+
+/* --- package_scene.c, for package.c: the contents of a package, without its head and its hash --- */
+
+/* text: the scene as scene_write_text writes it. */
+status package_put_scene(pack_writer *to, const scene *s, const char *text, diagnostic *why);
+status package_get_scene(pack_reader *from, scene **out, diagnostic *why);

@@ -1,9 +1,9 @@
 /* Writes and reads the contents of a package: the scene's text, path and limits, and all loaded data. */
-#include "scene/package/package_scene.h"
 #include "geometry/hierarchy/hierarchy.h"
 #include "image/texture.h"
 #include "scene/model/check.h"
 #include "scene/model/scene.h"
+#include "scene/package/package.h"
 
 #include <stdlib.h>
 #include <string.h>

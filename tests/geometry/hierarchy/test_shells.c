@@ -450,13 +450,11 @@ static void shells_that_touch_are_their_union(void **state)
 static void touching_faces_are_found_however_turned(void **state)
 {
     (void)state;
-    static const box pairs[][2] = {{BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 2)},
-                                   {BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 4)},
-                                   {BOX(0, 0, 0, 2, 2, 6), BOX(2, 0, 0, 2, 6, 2)},
-                                   {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 2, 2)},
-                                   {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 4, 4)},
-                                   {BOX(0, 0, 0, 4, 4, 4), BOX(0, 0, 0, 4, 4, 2)},
-                                   {BOX(0, 0, 0, 2, 6, 2), BOX(2, 2, 0, 2, 6, 2)}};
+    static const box pairs[][2] = {
+        {BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 2)}, {BOX(0, 0, 0, 2, 4, 4), BOX(2, 0, 0, 2, 2, 4)},
+        {BOX(0, 0, 0, 2, 2, 6), BOX(2, 0, 0, 2, 6, 2)}, {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 2, 2)},
+        {BOX(0, 0, 0, 4, 4, 4), BOX(1, 0, 0, 2, 4, 4)}, {BOX(0, 0, 0, 4, 4, 4), BOX(0, 0, 0, 4, 4, 2)},
+        {BOX(0, 0, 0, 2, 6, 2), BOX(2, 2, 0, 2, 6, 2)}};
     uint64_t seed = 4;
     const vec3 before = turned;
     for (int round = 0; round < 200; round++) {
