@@ -156,8 +156,8 @@ static double slope_at(const double *point, size_t count, size_t i)
     const double slope = a + bend * (2.0 * point[2 * i] - point[2 * left] - point[2 * left + 2]);
     if (i > 0 && i < count - 1)
         return limited(slope, a, b);
-    const double beside = i == 0 ? a : b;
-    return limited(slope, beside, beside);
+    const double last = i == 0 ? a : b;
+    return limited(slope, last, last);
 }
 
 double curve_at(const double *point, size_t count, double x)

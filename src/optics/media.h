@@ -49,8 +49,8 @@ size_t media_count(void);
 const medium *media_at(size_t i); /* i < media_count() */
 const medium *media_find(const char *name);
 
-/* The catalogue's name, of a medium or a metal, for another that is in use: in any case of letters, the maker's (N-BK7),
- * or a common or chemical one (acrylic, SiO2). The given name if there is none. */
+/* The catalogue's name, of a medium or a metal, for another that is in use: in any case of letters, the maker's
+ * (N-BK7), or a common or chemical one (acrylic, SiO2). The given name if there is none. */
 const char *media_usual_name(const char *name);
 
 /* Index relative to vacuum. A law relative to air is multiplied by the index of dry air at 15 C and 101325 Pa; Ciddor,

@@ -334,13 +334,13 @@ static void attributes_are_kept(void **state)
             assert_memory_equal(&out->uvs[v], &m->uvs[w], sizeof(mesh_uv));
         }
     }
-    bool beside = false;
+    bool neighbour = false;
     for (size_t t = 0; t < 11; t++) /* two corners on the filled triangle */
         for (int i = 0, common = 0; i < 9; i++) {
             common += m->triangles[t].corner[i / 3] == (uint32_t[]){1, 5, 7}[i % 3];
-            beside |= i == 8 && common == 2 && m->slots[t] == out->slots[11];
+            neighbour |= i == 8 && common == 2 && m->slots[t] == out->slots[11];
         }
-    assert_true(beside);
+    assert_true(neighbour);
     for (int k = 0; k < 3; k++) {
         const uint32_t v = out->triangles[11].corner[k];
         assert_true(out->normals[v].x == 1.0);

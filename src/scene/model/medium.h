@@ -1,6 +1,6 @@
 /* The medium of a material or of the surroundings: the law of its refractive index, and its absorption. A medium is an
- * index into medium_words: `ior` for a constant index, then the laws that need coefficients, `data`, then the catalogue, then
- * the metals (both optics/media.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
+ * index into medium_words: `ior` for a constant index, then the laws that need coefficients, `data`, then the
+ * catalogue, then the metals (both optics/media.h). Pure; indices are relative to vacuum, wavelengths are in vacuum. */
 #pragma once
 
 #include "optics/dispersion.h"

@@ -1,7 +1,7 @@
-/* A scene: render settings, camera, background, meshes, textures, optical data, lights, beams, materials, solids. Every user-settable
- * field is a row of the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals.
- * Code that only passes scenes to others includes scene/model/open.h, which states ownership; the renderer borrows a
- * scene. */
+/* A scene: render settings, camera, background, meshes, textures, optical data, lights, beams, materials, solids. Every
+ * user-settable field is a row of the parameter table (scene/model/params.h), which is used by files, --set, studies
+ * and manuals. Code that only passes scenes to others includes scene/model/open.h, which states ownership; the renderer
+ * borrows a scene. */
 #pragma once
 
 #include "scene/model/lights.h"
@@ -48,7 +48,8 @@ const mesh_entry *scene_points_of(const scene *s, const solid *owner);
 /* The solid's shape, with the triangles of its mesh, or its points, if they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
-/* Sets what materials and lights refer to by name (index_data and others). Called when data are loaded, or a name or an entry changes. */
+/* Sets what materials and lights refer to by name (index_data and others). Called when data are loaded, or a name or an
+ * entry changes. */
 void scene_follow_data(scene *s);
 
 /* The first light of kind sun, or NULL. */

@@ -484,7 +484,8 @@ static void doubled_shells_count_once(void **state)
     }
 }
 
-/* Overlapping, nested, glued and touching in all ways; one may be inside out, which is turned unless it is a hollow. */
+/* Overlapping, nested, glued and touching in every manner; one may be inside out, which is turned unless it is a
+ * hollow. */
 static void random_boxes_of_a_grid_are_their_union(void **state)
 {
     (void)state;
