@@ -239,10 +239,10 @@ static status load_mesh(mesh_request *request, diagnostic *why)
 /* What a scene with a transparent solid of the mesh would say. */
 static status describe(const mesh_request *request, FILE *stream, diagnostic *why)
 {
-    const mesh *m = request->made, *const * layers;
+    const mesh *m = request->made, *const * operands;
     diagnostic refusal = {.what = ""};
     int count;
-    const status code = m->closed ? hierarchy_layers(m, 1, &layers, &count, &refusal) : STATUS_OK;
+    const status code = m->closed ? hierarchy_operands(m, 1, &operands, &count, &refusal) : STATUS_OK;
     if (code != STATUS_OK && code != STATUS_BAD_INPUT)
         return diagnose(why, code, refusal.remedy, "%s", refusal.what);
     const char *text = code == STATUS_OK ? NULL : refusal.what;

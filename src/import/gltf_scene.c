@@ -400,8 +400,11 @@ static status open_skin(walk *w, gltf_item skin, placement *at)
     TRY(gltf_index(g, skin, skin.json, "inverseBindMatrices", "accessors", &index));
     if (index >= 0)
         TRY(gltf_accessor_open(g, skin, index, 16, &inverse));
-    if (at->joint_count == 0 || (inverse.count && inverse.count < at->joint_count))
-        return gltf_bad(g, skin, "joints", "are %zu, with %zu matrices", at->joint_count, inverse.count);
+    if (at->joint_count == 0)
+        return gltf_bad(g, skin, "joints", "are none, where a skin needs at least one");
+    if (inverse.count && inverse.count < at->joint_count)
+        return gltf_bad(g, skin, "joints", "are %zu in number, but there are only %zu inverse bind matrices",
+                        at->joint_count, inverse.count);
     at->joints = malloc(at->joint_count * sizeof *at->joints);
     if (!at->joints)
         return no_memory_for(g->req, g->why);

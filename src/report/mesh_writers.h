@@ -7,7 +7,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* refusal: why a closed mesh cannot be transparent (hierarchy_layers), or NULL. */
+/* refusal: why a closed mesh cannot be transparent (hierarchy_operands), or NULL. */
 void mesh_rows_text(FILE *stream, const mesh *m, const char *refusal);
 json_t *mesh_rows_json(const mesh *m, const char *refusal);
 

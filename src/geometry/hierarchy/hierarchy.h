@@ -35,12 +35,13 @@ hierarchy_report hierarchy_describe(const hierarchy *h);
 /* The hierarchy of the given kind that the mesh owns: built at its first use, freed with the mesh. Thread-safe. */
 status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const hierarchy **out, diagnostic *why);
 
-/* A closed mesh as the union of `count` layers: the mesh itself if its shells (mesh.h) neither overlap nor lie in one
- * another except as hollows; otherwise meshes that are copies of some of its shells, in each of which this holds. The
- * union is where the mesh's winding number is not 0. A shell that is inside out, and no hollow, is turned over. A shell
- * that crosses itself is not noticed. The mesh owns the layers, until mesh_move. Thread-safe. STATUS_BAD_INPUT, with
- * the place: a hollow crosses another shell, or more than 32 layers are needed; otherwise as hierarchy_build. */
-status hierarchy_layers(const mesh *m, int threads, const mesh *const **layers, int *count, diagnostic *why);
+/* A closed mesh as the union of `count` operands, as in constructive solid geometry: the mesh itself if its shells
+ * (mesh.h) neither overlap, touch nor lie in one another except as hollows; otherwise meshes that are copies of some of
+ * its shells, in each of which this holds. The union is where the mesh's winding number is not 0. A shell that is
+ * inside out, and no hollow, is turned over. A shell that crosses itself is not noticed. The mesh owns the operands,
+ * until mesh_move. Thread-safe. STATUS_BAD_INPUT, with the place: a hollow crosses another shell, more than 32 operands
+ * are needed, or, in a crowded mesh, a shell does not divide an inside from an outside; otherwise as hierarchy_build. */
+status hierarchy_operands(const mesh *m, int threads, const mesh *const **operands, int *count, diagnostic *why);
 
 /* Refits a bvh to its mesh after the vertices moved: triangles and boxes are recomputed bottom up, the tree is kept
  * (Wald, Boulos and Shirley, "Ray tracing deformable scenes using dynamic bounding volume hierarchies", ACM TOG 26(1),

@@ -1,7 +1,7 @@
-/* A closed mesh whose shells overlap as the union of layers in which they do not. A ray knows of each solid only
- * whether it is inside, so that the tracer needs a winding number of 0 or 1 everywhere in a mesh. Shells are put into
- * layers, the largest first, so that this holds in each layer: the sum of the layers' winding numbers is that of the
- * mesh, and is 0 where all of them are. Layers are solids of one medium, between which there is no interface.
+/* A closed mesh whose shells overlap or touch as the union of operands in which they do not. A ray knows of each solid
+ * only whether it is inside, so that the tracer needs a winding number of 0 or 1 everywhere in a mesh. Shells are put
+ * into operands, the largest first, so that this holds in each of these: the sum of their winding numbers is that of
+ * the mesh, and is 0 where all of them are. Operands are solids of one medium, between which there is no interface.
  *
  * Two shells whose boxes overlap cross if an edge of one meets a triangle of the other; of two that do not cross, one
  * contains the other if the winding number around a corner says so. Both are found with rays (hierarchy.h). */
@@ -14,14 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LAYERS_MAX = 32, PAIRS_MAX = 1 << 24 };
+enum { OPERANDS_MAX = 32, PAIRS_MAX = 1 << 24 };
 #define REMEDY "unite the shells in a modeller, or make the solid opaque"
 
 typedef struct shell {
     bounds3 box;
     double volume6; /* six times the enclosed volume; negative: a hollow, or inside out */
     uint32_t first; /* its first triangle */
-    int layer;      /* -1: none yet */
+    int operand;    /* -1: none yet */
     bool turned;    /* its triangles are turned over */
     size_t pairs;   /* its pairs begin here, and end where those of the next shell begin */
 } shell;
@@ -45,7 +45,7 @@ typedef struct shell_room {
     uint32_t at; /* the shell for which rays are searched */
     vec3 origin, direction;
     int winding; /* of shell `at` around the origin */
-    int layer_count;
+    int operand_count;
     bool turns;
 } shell_room;
 
@@ -79,7 +79,7 @@ static status measure_shells(shell_room *r, diagnostic *why)
             return diagnose(why, STATUS_FAILURE, "report this as a bug", "the shells of a mesh are miscounted");
         if (first == t) {
             const vec3 p = *corner_of(m, t, 0);
-            r->shells[r->count] = (shell){.box = {p, p}, .first = first, .layer = -1};
+            r->shells[r->count] = (shell){.box = {p, p}, .first = first, .operand = -1};
             r->order[r->count] = (uint32_t)r->count;
             r->shell_of[t] = (uint32_t)r->count++;
         } else {
@@ -308,7 +308,7 @@ static status check_shells(shell_room *r, diagnostic *why)
     return cancel_check(why);
 }
 
-/* --- layers --- */
+/* --- operands --- */
 
 static int compare_sizes(const void *one, const void *other)
 {
@@ -317,14 +317,14 @@ static int compare_sizes(const void *one, const void *other)
     return x != y ? (x > y ? -1 : 1) : a < b ? -1 : a > b;
 }
 
-/* The winding number of the layer's shells so far around the shell; *across: one that the shell crosses, or NULL. */
-static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_pair **across)
+/* The winding number of the operand's shells so far around the shell; *across: one that the shell crosses, or NULL. */
+static int winding_in(const shell_room *r, uint32_t at, int operand, const shell_pair **across)
 {
     int sum = 0;
     *across = NULL;
     for (size_t p = r->shells[at].pairs; p < r->shells[at + 1].pairs; p++) {
         const shell *other = &r->shells[r->pairs[p].other];
-        if (other->layer != layer)
+        if (other->operand != operand)
             continue;
         sum += other->turned ? -r->pairs[p].winding : r->pairs[p].winding;
         if (r->pairs[p].cross)
@@ -333,22 +333,22 @@ static int winding_in(const shell_room *r, uint32_t at, int layer, const shell_p
     return sum;
 }
 
-/* The first layer that has the winding number around the shell, and no shell that it crosses; -1: none. *across: one
+/* The first operand that has the winding number around the shell, and no shell that it crosses; -1: none. *across: one
  * of those that it crosses. */
-static int layer_with(const shell_room *r, uint32_t at, int winding, const shell_pair **across)
+static int operand_with(const shell_room *r, uint32_t at, int winding, const shell_pair **across)
 {
     const shell_pair *found;
     *across = NULL;
-    for (int layer = 0; layer < r->layer_count; layer++) {
-        const int sum = winding_in(r, at, layer, &found);
+    for (int operand = 0; operand < r->operand_count; operand++) {
+        const int sum = winding_in(r, at, operand, &found);
         if (!found && sum == winding)
-            return layer;
+            return operand;
         *across = found ? found : *across;
     }
     return -1;
 }
 
-/* A pair of the shell with one around it. There is one: each layer crosses it or has a winding number around it. */
+/* A pair of the shell with one around it. There is one: each operand crosses it or has a winding number around it. */
 static const shell_pair *pair_around(const shell_room *r, uint32_t at)
 {
     const shell_pair *p = &r->pairs[r->shells[at].pairs];
@@ -357,25 +357,25 @@ static const shell_pair *pair_around(const shell_room *r, uint32_t at)
     return p;
 }
 
-/* A hollow goes into a layer that is solid around it. One that has none is inside out. */
+/* A hollow goes into an operand that is solid around it. One that has none is inside out. */
 static status place_shell(shell_room *r, uint32_t at, diagnostic *why)
 {
     shell *s = &r->shells[at];
     const shell_pair *across;
     if (s->volume6 < 0.0) {
-        s->layer = layer_with(r, at, 1, &across);
-        if (s->layer < 0 && across)
+        s->operand = operand_with(r, at, 1, &across);
+        if (s->operand < 0 && across)
             return refuse(r, across, "and one is a hollow", why);
-        s->turned = s->layer < 0;
+        s->turned = s->operand < 0;
         r->turns |= s->turned;
     }
-    if (s->layer < 0)
-        s->layer = layer_with(r, at, 0, &across);
-    if (s->layer >= 0)
+    if (s->operand < 0)
+        s->operand = operand_with(r, at, 0, &across);
+    if (s->operand >= 0)
         return STATUS_OK;
-    if (r->layer_count == LAYERS_MAX)
+    if (r->operand_count == OPERANDS_MAX)
         return refuse(r, across ? across : pair_around(r, at), "and are nested more than 32 deep", why);
-    s->layer = r->layer_count++;
+    s->operand = r->operand_count++;
     return STATUS_OK;
 }
 
@@ -399,19 +399,19 @@ static void copy_vertex(const mesh *from, uint32_t v, mesh *to, uint32_t at)
         memcpy(to->colors[at], from->colors[v], sizeof *to->colors);
 }
 
-static bool is_in(const shell_room *r, size_t t, int layer)
+static bool is_in(const shell_room *r, size_t t, int operand)
 {
-    return r->shell_of[t] != UINT32_MAX && r->shells[r->shell_of[t]].layer == layer;
+    return r->shell_of[t] != UINT32_MAX && r->shells[r->shell_of[t]].operand == operand;
 }
 
-/* number: by vertex, its number in the layer plus 1. */
-static status copy_layer(const shell_room *r, int layer, uint32_t *number, const mesh **out, diagnostic *why)
+/* number: by vertex, its number in the operand plus 1. */
+static status copy_operand(const shell_room *r, int operand, uint32_t *number, const mesh **out, diagnostic *why)
 {
     const mesh *m = r->m;
     size_t triangles = 0, vertices = 0;
     memset(number, 0, m->vertex_count * sizeof *number);
     for (size_t t = 0; t < m->triangle_count; t++)
-        for (int k = 0; is_in(r, t, layer) && k < 3; k++) {
+        for (int k = 0; is_in(r, t, operand) && k < 3; k++) {
             uint32_t *one = &number[m->triangles[t].corner[k]];
             *one = *one ? *one : (uint32_t)++vertices;
             triangles += k == 0;
@@ -428,7 +428,7 @@ static status copy_layer(const shell_room *r, int layer, uint32_t *number, const
         if (number[v])
             copy_vertex(m, (uint32_t)v, part, number[v] - 1);
     for (size_t t = 0, to = 0; t < m->triangle_count; t++) {
-        if (!is_in(r, t, layer))
+        if (!is_in(r, t, operand))
             continue;
         const bool turned = r->shells[r->shell_of[t]].turned;
         for (int k = 0; k < 3; k++)
@@ -440,12 +440,12 @@ static status copy_layer(const shell_room *r, int layer, uint32_t *number, const
     return mesh_finish(part, why);
 }
 
-static status copy_layers(const shell_room *r, const mesh **layers, diagnostic *why)
+static status copy_operands(const shell_room *r, const mesh **operands, diagnostic *why)
 {
     uint32_t *number = malloc((r->m->vertex_count + 1) * sizeof *number);
     status code = number ? STATUS_OK : out_of_memory(why);
-    for (int i = 0; i < r->layer_count && code == STATUS_OK; i++)
-        code = copy_layer(r, i, number, &layers[i], why);
+    for (int i = 0; i < r->operand_count && code == STATUS_OK; i++)
+        code = copy_operand(r, i, number, &operands[i], why);
     free(number);
     return code;
 }
@@ -463,9 +463,9 @@ static status divide(shell_room *r, int threads, diagnostic *why)
 {
     TRY(measure_shells(r, why));
     TRY(find_pairs(r, why));
-    r->layer_count = 0;
+    r->operand_count = 0;
     if (is_plain(r)) {
-        r->layer_count = 1;
+        r->operand_count = 1;
         return STATUS_OK;
     }
     hierarchy *tree = NULL;
@@ -483,23 +483,23 @@ static status divide(shell_room *r, int threads, diagnostic *why)
     return code;
 }
 
-static status make_layers(mesh *m, int threads, diagnostic *why)
+static status make_operands(mesh *m, int threads, diagnostic *why)
 {
-    shell_room r = {.m = m, .layer_count = 1};
+    shell_room r = {.m = m, .operand_count = 1};
     status code = m->shell_count > 1 || m->crowded ? divide(&r, threads, why) : STATUS_OK;
     struct mesh_shared *shared = m->shared;
-    if (code == STATUS_OK && !(shared->layers = calloc((size_t)r.layer_count, sizeof *shared->layers)))
+    if (code == STATUS_OK && !(shared->operands = calloc((size_t)r.operand_count, sizeof *shared->operands)))
         code = out_of_memory(why);
     if (code == STATUS_OK) {
-        shared->layer_count = r.layer_count;
-        shared->layers[0] = m;
-        if (r.layer_count > 1 || r.turns || m->crowded) {
-            shared->layers[0] = NULL;
-            code = copy_layers(&r, shared->layers, why);
+        shared->operand_count = r.operand_count;
+        shared->operands[0] = m;
+        if (r.operand_count > 1 || r.turns || m->crowded) {
+            shared->operands[0] = NULL;
+            code = copy_operands(&r, shared->operands, why);
         }
     }
     if (code != STATUS_OK)
-        mesh_forget_layers(m);
+        mesh_forget_operands(m);
     free(r.shell_of);
     free(r.shells);
     free(r.order);
@@ -507,14 +507,14 @@ static status make_layers(mesh *m, int threads, diagnostic *why)
     return code;
 }
 
-status hierarchy_layers(const mesh *m, int threads, const mesh *const **layers, int *count, diagnostic *why)
+status hierarchy_operands(const mesh *m, int threads, const mesh *const **operands, int *count, diagnostic *why)
 {
     status code = STATUS_OK;
     pthread_mutex_lock(&m->shared->mutex);
-    if (!m->shared->layers)
-        code = make_layers((mesh *)m, threads, why);
-    *layers = m->shared->layers;
-    *count = m->shared->layer_count;
+    if (!m->shared->operands)
+        code = make_operands((mesh *)m, threads, why);
+    *operands = m->shared->operands;
+    *count = m->shared->operand_count;
     pthread_mutex_unlock(&m->shared->mutex);
     return code;
 }

@@ -13,15 +13,15 @@ static status no_room(diagnostic *why)
     return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for a mesh");
 }
 
-void mesh_forget_layers(mesh *m)
+void mesh_forget_operands(mesh *m)
 {
     struct mesh_shared *shared = m->shared;
-    for (int i = 0; i < shared->layer_count; i++)
-        if (shared->layers[i] != m)
-            mesh_release(shared->layers[i]);
-    free(shared->layers);
-    shared->layers = NULL;
-    shared->layer_count = 0;
+    for (int i = 0; i < shared->operand_count; i++)
+        if (shared->operands[i] != m)
+            mesh_release(shared->operands[i]);
+    free(shared->operands);
+    shared->operands = NULL;
+    shared->operand_count = 0;
 }
 
 static void mesh_free(mesh *m)
@@ -31,7 +31,7 @@ static void mesh_free(mesh *m)
         for (int kind = 0; kind < HIERARCHY_KIND_COUNT; kind++)
             if (shared->hierarchies[kind])
                 shared->destroy(shared->hierarchies[kind]);
-        mesh_forget_layers(m);
+        mesh_forget_operands(m);
         pthread_mutex_destroy(&shared->mutex);
         free(shared);
     }
@@ -378,7 +378,7 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
         return mesh_check(&moved, why);
     }
     memmove(m->vertices, vertices, m->vertex_count * sizeof *vertices);
-    mesh_forget_layers(m);
+    mesh_forget_operands(m);
     if (uses_every_vertex(m)) {
         m->bounds = (bounds3){{e.low[0], e.low[1], e.low[2]}, {e.high[0], e.high[1], e.high[2]}};
         m->single = e.single;

@@ -77,8 +77,8 @@ typedef struct mesh {
     bool crowded;               /* closed, though more than two triangles share some edge */
     size_t shell_count;         /* mesh_shells of a closed mesh; 0 for one that is not closed */
     mesh_hole hole;             /* for a mesh that is not closed */
-    struct mesh_shared *shared; /* number of owners, and the hierarchies and layers built for it */
-    uint32_t *numbers;          /* of a layer (hierarchy_layers): its triangles' numbers in the whole mesh; else NULL */
+    struct mesh_shared *shared; /* number of owners, and the hierarchies and operands built for it */
+    uint32_t *numbers;          /* of an operand (hierarchy_operands): the mesh's numbers of its triangles; else NULL */
 } mesh;
 
 /* Checks that a mesh of this size is allowed and, with the temporary arrays of mesh_finish, fits into memory

@@ -20,12 +20,12 @@ struct mesh_shared {
     pthread_mutex_t mutex;                        /* held while a hierarchy is built, so that each is built only once */
     hierarchy *hierarchies[HIERARCHY_KIND_COUNT]; /* NULL until first used */
     void (*destroy)(hierarchy *h);                /* NULL while there is no hierarchy */
-    const mesh **layers; /* hierarchy_layers: written under the mutex; NULL until first used, or after a move */
-    int layer_count;
+    const mesh **operands; /* hierarchy_operands: written under the mutex; NULL until first used, or after a move */
+    int operand_count;
 };
 
-/* Releases the layers, while no other thread uses the mesh. */
-void mesh_forget_layers(mesh *m);
+/* Releases the operands, while no other thread uses the mesh. */
+void mesh_forget_operands(mesh *m);
 
 /* --- steps of mesh_finish --- */
 

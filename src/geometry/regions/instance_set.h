@@ -76,7 +76,7 @@ static inline uint32_t mesh_face_triangle(int64_t face)
     return (uint32_t)(face & 0xffffffff);
 }
 
-/* The face's triangle in the solid's mesh, of which the part may be a layer (hierarchy_layers). */
+/* The face's triangle in the solid's mesh, of which the part may be an operand (hierarchy_operands). */
 static inline uint32_t instance_set_triangle(const instance_set *f, int64_t face)
 {
     const uint32_t *numbers = f->parts[f->by_primitive[mesh_face_primitive(face)]].triangles->numbers;

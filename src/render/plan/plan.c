@@ -81,7 +81,7 @@ static status tree_of(const scene *s, plan *p, const mesh *m, const hierarchy **
     return STATUS_OK;
 }
 
-/* first: of the solids with this mesh; once: of its layers. */
+/* first: of the solids with this mesh; once: of its operands. */
 static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, const hierarchy *tree, bool first,
                         bool once)
 {
@@ -99,33 +99,33 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
     }
 }
 
-/* Adds the sources of the layers of a solid's mesh. shapes: room for one for each layer. */
-static status add_layers(const scene *s, size_t i, plan *p, solid_shape *shapes, region_source source,
-                         region_source *sources, int *count, diagnostic *why)
+/* Adds the sources of the operands of a solid's mesh. shapes: room for one for each operand. */
+static status add_operands(const scene *s, size_t i, plan *p, solid_shape *shapes, region_source source,
+                           region_source *sources, int *count, diagnostic *why)
 {
     const solid *one = &s->solids[i];
     const mesh_entry *m = scene_find_mesh(s, one->mesh);
-    const mesh *const *layers;
-    int layer_count;
+    const mesh *const *operands;
+    int operand_count;
     if (!m || !m->data)
         return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the mesh is not loaded", one->name);
-    TRY(scene_mesh_layers(s, one, &layers, &layer_count, why));
+    TRY(scene_mesh_operands(s, one, &operands, &operand_count, why));
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= !(s->solids[k].visible && solid_shows_mesh(&s->solids[k], one->mesh));
-    for (int layer = 0; layer < layer_count; layer++) {
-        shapes[layer] = one->shape;
-        shapes[layer].mesh = layers[layer];
-        source.shape = &shapes[layer];
-        TRY(tree_of(s, p, layers[layer], &source.tree, why));
-        report_mesh(p, m, &shapes[layer], source.tree, first, layer == 0);
+    for (int operand = 0; operand < operand_count; operand++) {
+        shapes[operand] = one->shape;
+        shapes[operand].mesh = operands[operand];
+        source.shape = &shapes[operand];
+        TRY(tree_of(s, p, operands[operand], &source.tree, why));
+        report_mesh(p, m, &shapes[operand], source.tree, first, operand == 0);
         sources[(*count)++] = source;
     }
     return STATUS_OK;
 }
 
-/* Adds the sources of the regions of solid i. shape: room for its shape with points, or for those of its mesh's layers;
- * copies: the number of regions so far. */
+/* Adds the sources of the regions of solid i. shape: room for its shape with points, or for those of its mesh's
+ * operands; copies: the number of regions so far. */
 static status add_source(const scene *s, const index_law *laws, int i, plan *p, solid_shape *shape,
                          region_source *sources, int *count, size_t *copies, diagnostic *why)
 {
@@ -158,20 +158,20 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
         source.further_media = (int64_t)(s->solid_count + *copies);
     *copies += solid_shape_count(source.shape);
     if (is_mesh)
-        return add_layers(s, (size_t)i, p, shape, source, sources, count, why);
+        return add_operands(s, (size_t)i, p, shape, source, sources, count, why);
     sources[(*count)++] = source;
     return STATUS_OK;
 }
 
-/* One for each solid, and for each further layer of its mesh. */
+/* One for each solid, and for each further operand of its mesh. */
 static status count_sources(const scene *s, size_t *places, diagnostic *why)
 {
     *places = s->solid_count;
     for (size_t i = 0; i < s->solid_count; i++) {
-        const mesh *const *layers;
+        const mesh *const *operands;
         int count = 0;
         if (s->solids[i].visible && shape_of(&s->solids[i].shape)->triangles)
-            TRY(scene_mesh_layers(s, &s->solids[i], &layers, &count, why));
+            TRY(scene_mesh_operands(s, &s->solids[i], &operands, &count, why));
         *places += count > 1 ? (size_t)count - 1 : 0;
     }
     return STATUS_OK;

@@ -325,9 +325,9 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
         return diagnose(why, STATUS_BAD_INPUT, "use it as the points of another solid", "%.80s: %.80s has no triangles",
                         owner->name, m->name);
     TRY(check_closed(s, owner, m, why));
-    const mesh *const *layers;
+    const mesh *const *operands;
     int count;
-    return scene_mesh_layers(s, owner, &layers, &count, why);
+    return scene_mesh_operands(s, owner, &operands, &count, why);
 }
 
 /* reflectivity + transparency must not exceed 1 for any kind of face, either. */

@@ -182,16 +182,17 @@ bool ignores_face_transparency(const scene *s, const solid *owner)
     return false;
 }
 
-status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why)
+status scene_mesh_operands(const scene *s, const solid *owner, const mesh *const **operands, int *count,
+                           diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
     if (!m || !m->data || !m->data->closed || (m->data->shell_count < 2 && !m->data->crowded) ||
         solid_is_opaque(s, owner)) {
-        *layers = m && m->data ? &m->data : NULL;
-        *count = *layers ? 1 : 0;
+        *operands = m && m->data ? &m->data : NULL;
+        *count = *operands ? 1 : 0;
         return STATUS_OK;
     }
     diagnostic bad = {.what = ""};
-    const status code = hierarchy_layers(m->data, scene_build_threads(&s->render), layers, count, &bad);
+    const status code = hierarchy_operands(m->data, scene_build_threads(&s->render), operands, count, &bad);
     return code == STATUS_OK ? code : diagnose(why, code, bad.remedy, "%.80s: %s", owner->name, bad.what);
 }

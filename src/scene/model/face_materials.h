@@ -56,6 +56,7 @@ int scene_crystals(const scene *s);
 /* Whether faces have a transparency or reflectivity that has no effect, because the solid refracts. */
 bool ignores_face_transparency(const scene *s, const solid *owner);
 
-/* The layers of a solid's mesh (hierarchy_layers), whose union rays see; an opaque solid, whose inside they do not see,
- * and an open mesh have one. *count is 0 without a loaded mesh. The mesh owns the list. */
-status scene_mesh_layers(const scene *s, const solid *owner, const mesh *const **layers, int *count, diagnostic *why);
+/* The operands of a solid's mesh (hierarchy_operands), whose union rays see; an opaque solid, whose inside they do not
+ * see, and an open mesh have one. *count is 0 without a loaded mesh. The mesh owns the list. */
+status scene_mesh_operands(const scene *s, const solid *owner, const mesh *const **operands, int *count,
+                           diagnostic *why);

@@ -185,11 +185,11 @@ status scene_build_hierarchies(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->solid_count; i++) {
         const mesh_entry *m = s->solids[i].visible ? scene_mesh_of(s, &s->solids[i]) : NULL;
         const hierarchy *built;
-        const mesh *const *layers;
+        const mesh *const *operands;
         int count;
         if (m && m->data)
-            TRY(scene_mesh_layers(s, &s->solids[i], &layers, &count, why));
-        if (m && m->data && layers[0] == m->data) /* other layers are made from the mesh where it is used */
+            TRY(scene_mesh_operands(s, &s->solids[i], &operands, &count, why));
+        if (m && m->data && operands[0] == m->data) /* other operands are made from the mesh where it is used */
             TRY(hierarchy_of_mesh(m->data, (hierarchy_kind)s->render.accel, scene_build_threads(&s->render), &built,
                                   why));
     }

@@ -98,14 +98,14 @@ static int different(scene *one, scene *other)
     return count;
 }
 
-static int layers_of(const mesh *m, const mesh *const **layers)
+static int operands_of(const mesh *m, const mesh *const **operands)
 {
     int count;
     diagnostic why = {0};
     const mesh *const *list;
-    worked(hierarchy_layers(m, 1, &list, &count, &why), &why);
-    if (layers)
-        *layers = list;
+    worked(hierarchy_operands(m, 1, &list, &count, &why), &why);
+    if (operands)
+        *operands = list;
     return count;
 }
 
@@ -120,8 +120,8 @@ static void overlapping_boxes_are_their_union(void **state)
         for (size_t i = 0; i < count; i++)
             boxes[i] = random_box(&seed);
         mesh *m = mesh_of_boxes(boxes, count, 0);
-        const int layers = layers_of(m, NULL);
-        most = layers > most ? layers : most;
+        const int operands = operands_of(m, NULL);
+        most = operands > most ? operands : most;
         assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(boxes, count, -1)), 0);
         mesh_release(m);
     }
@@ -158,7 +158,7 @@ static void a_shell_in_a_shell_is_hidden(void **state)
     (void)state;
     const box both[2] = {unit, small};
     mesh *m = mesh_of_boxes(both, 2, 0);
-    assert_int_equal(layers_of(m, NULL), 2);
+    assert_int_equal(operands_of(m, NULL), 2);
     assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 1, -1)), 0);
     mesh_release(m);
 }
@@ -168,9 +168,9 @@ static void a_hollow_stays_one(void **state)
     (void)state;
     const box both[2] = {unit, small};
     mesh *m = mesh_of_boxes(both, 2, 2);
-    const mesh *const *layers;
-    assert_int_equal(layers_of(m, &layers), 1);
-    assert_ptr_equal(layers[0], m);
+    const mesh *const *operands;
+    assert_int_equal(operands_of(m, &operands), 1);
+    assert_ptr_equal(operands[0], m);
     assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 2, 1)), 0);
     mesh_release(m);
 }
@@ -181,35 +181,35 @@ static void hollows_count_by_winding(void **state)
     (void)state;
     const box nest[3] = {unit, small, {{0.1, -0.1, 0.2}, {0.3, 0.3, 0.2}, {1, 2, 3}}};
     mesh *m = mesh_of_boxes(nest, 3, 2);
-    assert_int_equal(layers_of(m, NULL), 1);
+    assert_int_equal(operands_of(m, NULL), 1);
     mesh_release(m);
     const box part[3] = {unit, small, {{0.4, 0.1, 0.2}, {0.5, 0.6, 0.3}, {7, 2, 3}}};
     m = mesh_of_boxes(part, 3, 2);
-    assert_int_equal(layers_of(m, NULL), 2);
+    assert_int_equal(operands_of(m, NULL), 2);
     scene *other = scene_of_boxes(part, 3, 1);
     set(other, "b2.priority=3");
     assert_int_equal(different(scene_of_mesh(m), other), 0);
     mesh_release(m);
 }
 
-static void shells_apart_are_one_layer(void **state)
+static void shells_apart_are_one_operand(void **state)
 {
     (void)state;
     const box both[2] = {unit, apart};
     mesh *m = mesh_of_boxes(both, 2, 0);
-    const mesh *const *layers;
-    assert_int_equal(layers_of(m, &layers), 1);
-    assert_ptr_equal(layers[0], m);
+    const mesh *const *operands;
+    assert_int_equal(operands_of(m, &operands), 1);
+    assert_ptr_equal(operands[0], m);
     mesh_release(m);
 }
 
 /* Boxes of shells that overlap though the shells do not. */
-static void shells_that_miss_each_other_are_one_layer(void **state)
+static void shells_that_miss_each_other_are_one_operand(void **state)
 {
     (void)state;
     const box both[2] = {{{0, 0, 0}, {4, 0.2, 0.2}, {0, 0, 45}}, {{0.5, -0.5, 0}, {4, 0.2, 0.2}, {0, 0, 45}}};
     mesh *m = mesh_of_boxes(both, 2, 0);
-    assert_int_equal(layers_of(m, NULL), 1);
+    assert_int_equal(operands_of(m, NULL), 1);
     mesh_release(m);
 }
 
@@ -218,11 +218,11 @@ static void a_shell_that_is_inside_out_is_turned(void **state)
     (void)state;
     const box both[2] = {unit, apart};
     mesh *m = mesh_of_boxes(both, 2, 2);
-    const mesh *const *layers;
-    assert_int_equal(layers_of(m, &layers), 1);
-    assert_ptr_not_equal(layers[0], m);
-    assert_int_equal(layers[0]->triangle_count, 24);
-    assert_int_equal(layers[0]->numbers[13], 13);
+    const mesh *const *operands;
+    assert_int_equal(operands_of(m, &operands), 1);
+    assert_ptr_not_equal(operands[0], m);
+    assert_int_equal(operands[0]->triangle_count, 24);
+    assert_int_equal(operands[0]->numbers[13], 13);
     assert_int_equal(different(scene_of_mesh(m), scene_of_boxes(both, 2, -1)), 0);
     mesh_release(m);
 }
@@ -232,10 +232,10 @@ static void a_hollow_that_crosses_a_shell_is_refused(void **state)
     (void)state;
     const box both[2] = {{{0, 0, 0}, {2, 2, 2}, {0, 0, 0}}, {{1, 0, 0}, {1, 1, 1}, {0, 0, 0}}};
     mesh *m = mesh_of_boxes(both, 2, 2);
-    const mesh *const *layers;
+    const mesh *const *operands;
     int count;
     diagnostic why = {0};
-    assert_int_equal(hierarchy_layers(m, 1, &layers, &count, &why), STATUS_BAD_INPUT);
+    assert_int_equal(hierarchy_operands(m, 1, &operands, &count, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "those of triangles 12 and 0 at (1, 0.5, 0.5), and one is a hollow"));
     scene *s = scene_of_mesh(m);
     worked(scene_load(s, &why), &why);
@@ -249,10 +249,10 @@ static void a_hollow_that_crosses_a_shell_is_refused(void **state)
 
 static void refused_at(const mesh *m, const char *text)
 {
-    const mesh *const *layers;
+    const mesh *const *operands;
     int count;
     diagnostic why = {0};
-    assert_int_equal(hierarchy_layers(m, 1, &layers, &count, &why), STATUS_BAD_INPUT);
+    assert_int_equal(hierarchy_operands(m, 1, &operands, &count, &why), STATUS_BAD_INPUT);
     if (!strstr(why.what, text))
         fail_msg("%s", why.what);
 }
@@ -381,14 +381,14 @@ static void is_union(const mesh *m, const box *boxes, size_t count, int air)
     }
 }
 
-static void touch_is_union(const box *boxes, size_t count, int shells, int layers)
+static void touch_is_union(const box *boxes, size_t count, int shells, int operands)
 {
     for (int cells = 0; cells < 2; cells++) {
         mesh *m = mesh_of_cells(boxes, count, 0, cells);
         is_union(m, boxes, count, -1);
         if (cells) {
             assert_int_equal(m->shell_count, shells);
-            assert_int_equal(layers_of(m, NULL), layers);
+            assert_int_equal(operands_of(m, NULL), operands);
         }
         mesh_release(m);
     }
@@ -408,10 +408,10 @@ static void glued_boxes_are_one_box(void **state)
     const box two[2] = {BOX(-1, 0, 0, 2, 2, 2), BOX(1, 0, 0, 2, 2, 2)}, long_one = BOX(0, 0, 0, 4, 2, 2);
     for (int cells = 0; cells < 2; cells++) {
         mesh *m = mesh_of_cells(two, 2, 0, cells);
-        const mesh *const *layers;
+        const mesh *const *operands;
         assert_int_equal(m->shell_count, 1);
-        assert_int_equal(layers_of(m, &layers), 1);
-        assert_int_equal(layers[0]->triangle_count, m->triangle_count - (cells ? 16 : 4));
+        assert_int_equal(operands_of(m, &operands), 1);
+        assert_int_equal(operands[0]->triangle_count, m->triangle_count - (cells ? 16 : 4));
         is_union(m, &long_one, 1, -1);
         mesh_release(m);
     }
@@ -462,7 +462,7 @@ static void touching_faces_are_found_however_turned(void **state)
         for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
             for (int cells = 0; cells < 2; cells++) {
                 mesh *m = mesh_of_cells(pairs[i], 2, 0, cells);
-                assert_int_equal(layers_of(m, NULL), m->shell_count);
+                assert_int_equal(operands_of(m, NULL), m->shell_count);
                 mesh_release(m);
             }
     }
@@ -475,10 +475,10 @@ static void doubled_shells_count_once(void **state)
     const box twice[3] = {BOX(0, 0, 0, 2, 4, 2), BOX(0, 0, 0, 2, 4, 2), BOX(0, 0, 0, 2, 4, 2)};
     for (unsigned inside_out = 0; inside_out < 8; inside_out += 7) {
         mesh *m = mesh_of_cells(twice, 3, inside_out, false);
-        const mesh *const *layers;
+        const mesh *const *operands;
         assert_int_equal(m->shell_count, 1);
-        assert_int_equal(layers_of(m, &layers), 1);
-        assert_int_equal(layers[0]->triangle_count, 12);
+        assert_int_equal(operands_of(m, &operands), 1);
+        assert_int_equal(operands[0]->triangle_count, 12);
         is_union(m, twice, 1, -1);
         mesh_release(m);
     }
@@ -585,7 +585,7 @@ static void shells_in_the_planes_of_others_are_refused(void **state)
         if (mixed)
             refused_at(m, "parts of the mesh that share edges lie in each other");
         else
-            assert_int_equal(layers_of(m, NULL), 2);
+            assert_int_equal(operands_of(m, NULL), 2);
         mesh_release(m);
     }
 }
@@ -598,12 +598,12 @@ static void a_shell_is_found_in_another_past_its_corner(void **state)
     put_cube(m, 0, vec3_make(0.0, 0.0, 0.0), 0.125);
     put_cube(m, 1, vec3_make(2 * 0.5396 - 2.125, 2 * 0.6180 - 2.125, 2 * 0.5716 - 2.125), 2.0);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
-    assert_int_equal(layers_of(m, NULL), 2);
+    assert_int_equal(operands_of(m, NULL), 2);
     mesh_release(m);
 }
 
 /* Vertices with all that they have, materials, and numbers in the mesh. */
-static void layers_are_copies_of_shells(void **state)
+static void operands_are_copies_of_shells(void **state)
 {
     (void)state;
     enum { N = 3 };
@@ -620,39 +620,39 @@ static void layers_are_copies_of_shells(void **state)
     for (size_t t = 0; t < m->triangle_count; t++)
         m->slots[t] = (uint8_t)random_below(&seed, 7);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
-    const mesh *const *layers;
+    const mesh *const *operands;
     bool seen[12 * N] = {false};
-    assert_int_equal(layers_of(m, &layers), N);
+    assert_int_equal(operands_of(m, &operands), N);
     for (int i = 0; i < N; i++) {
-        assert_int_equal(layers[i]->slot_count, 7);
-        assert_int_equal(layers[i]->triangle_count, 12);
+        assert_int_equal(operands[i]->slot_count, 7);
+        assert_int_equal(operands[i]->triangle_count, 12);
         for (size_t t = 0; t < 12; t++) {
-            const uint32_t in = layers[i]->numbers[t];
+            const uint32_t in = operands[i]->numbers[t];
             assert_false(seen[in]);
             seen[in] = true;
-            assert_int_equal(layers[i]->slots[t], m->slots[in]);
+            assert_int_equal(operands[i]->slots[t], m->slots[in]);
             for (int k = 0; k < 3; k++) {
-                const uint32_t v = layers[i]->triangles[t].corner[k], w = m->triangles[in].corner[k];
-                assert_memory_equal(&layers[i]->vertices[v], &m->vertices[w], sizeof(vec3));
-                assert_true(vec3_length(vec3_sub(layers[i]->normals[v], m->normals[w])) < 1e-15);
-                assert_true(layers[i]->uvs[v].u == m->uvs[w].u && layers[i]->uvs[v].v == m->uvs[w].v);
+                const uint32_t v = operands[i]->triangles[t].corner[k], w = m->triangles[in].corner[k];
+                assert_memory_equal(&operands[i]->vertices[v], &m->vertices[w], sizeof(vec3));
+                assert_true(vec3_length(vec3_sub(operands[i]->normals[v], m->normals[w])) < 1e-15);
+                assert_true(operands[i]->uvs[v].u == m->uvs[w].u && operands[i]->uvs[v].v == m->uvs[w].v);
             }
         }
     }
     mesh_release(m);
 }
 
-/* A mesh that moves has other layers. */
+/* A mesh that moves has other operands. */
 static void moved_shells_are_divided_again(void **state)
 {
     (void)state;
     box both[2] = {unit, apart};
     mesh *m = mesh_of_boxes(both, 2, 0);
-    assert_int_equal(layers_of(m, NULL), 1);
+    assert_int_equal(operands_of(m, NULL), 1);
     both[1].center.x = 1.0;
     mesh *over = mesh_of_boxes(both, 2, 0);
     assert_int_equal(mesh_move(m, over->vertices, NULL, NULL), STATUS_OK);
-    assert_int_equal(layers_of(m, NULL), 2);
+    assert_int_equal(operands_of(m, NULL), 2);
     mesh_release(m);
     mesh_release(over);
 }
@@ -687,8 +687,8 @@ int main(void)
         cmocka_unit_test(a_shell_in_a_shell_is_hidden),
         cmocka_unit_test(a_hollow_stays_one),
         cmocka_unit_test(hollows_count_by_winding),
-        cmocka_unit_test(shells_apart_are_one_layer),
-        cmocka_unit_test(shells_that_miss_each_other_are_one_layer),
+        cmocka_unit_test(shells_apart_are_one_operand),
+        cmocka_unit_test(shells_that_miss_each_other_are_one_operand),
         cmocka_unit_test(a_shell_that_is_inside_out_is_turned),
         cmocka_unit_test(a_hollow_that_crosses_a_shell_is_refused),
         cmocka_unit_test(more_than_32_in_one_another_are_refused),
@@ -702,7 +702,7 @@ int main(void)
         cmocka_unit_test(shells_that_do_not_pair_are_refused),
         cmocka_unit_test(shells_in_the_planes_of_others_are_refused),
         cmocka_unit_test(a_shell_is_found_in_another_past_its_corner),
-        cmocka_unit_test(layers_are_copies_of_shells),
+        cmocka_unit_test(operands_are_copies_of_shells),
         cmocka_unit_test(moved_shells_are_divided_again),
         cmocka_unit_test(overlapping_spheres_are_their_union),
     };
