@@ -40,7 +40,7 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
  * its shells, in each of which this holds. The union is where the mesh's winding number is not 0. A shell that is
  * inside out, and no hollow, is turned over. A shell that crosses itself is not noticed. The mesh owns the operands,
  * until mesh_move. Thread-safe. STATUS_BAD_INPUT, with the place: a hollow crosses another shell, more than 32 operands
- * are needed, or, in a crowded mesh, a shell does not divide an inside from an outside; otherwise as hierarchy_build. */
+ * are needed, or, in a crowded mesh, a shell has no inside and outside; otherwise as hierarchy_build. */
 status hierarchy_operands(const mesh *m, int threads, const mesh *const **operands, int *count, diagnostic *why);
 
 /* Refits a bvh to its mesh after the vertices moved: triangles and boxes are recomputed bottom up, the tree is kept
