@@ -590,18 +590,6 @@ static void shells_in_the_planes_of_others_are_refused(void **state)
     }
 }
 
-/* The first ray that finds whether one contains the other meets a corner of the outer one. */
-static void a_shell_is_found_in_another_past_its_corner(void **state)
-{
-    (void)state;
-    mesh *m = cubes(2);
-    put_cube(m, 0, vec3_make(0.0, 0.0, 0.0), 0.125);
-    put_cube(m, 1, vec3_make(2 * 0.5396 - 2.125, 2 * 0.6180 - 2.125, 2 * 0.5716 - 2.125), 2.0);
-    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
-    assert_int_equal(operands_of(m, NULL), 2);
-    mesh_release(m);
-}
-
 /* Vertices with all that they have, materials, and numbers in the mesh. */
 static void operands_are_copies_of_shells(void **state)
 {
@@ -701,7 +689,6 @@ int main(void)
         cmocka_unit_test(a_cavity_at_a_face_is_a_notch),
         cmocka_unit_test(shells_that_do_not_pair_are_refused),
         cmocka_unit_test(shells_in_the_planes_of_others_are_refused),
-        cmocka_unit_test(a_shell_is_found_in_another_past_its_corner),
         cmocka_unit_test(operands_are_copies_of_shells),
         cmocka_unit_test(moved_shells_are_divided_again),
         cmocka_unit_test(overlapping_spheres_are_their_union),
