@@ -198,7 +198,9 @@ _cuvette()
         ;;
     media)
         if [[ $current == -* ]]; then
-            _cuvette_words --at --json --help --usage --version
+            _cuvette_words --at --glass --column --json --help --usage --version
+        elif [[ $current == */* || $current == *.* ]]; then
+            _cuvette_files 'yml|yaml|agf|csv|txt|tsv'
         else
             _cuvette_words "$("${COMP_WORDS[0]}" media 2>/dev/null | awk 'NR > 1 { print $1 }')"
         fi

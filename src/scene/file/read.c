@@ -15,7 +15,8 @@
  * A medium may also be a map of data, {file: PATH, ...}. An image sets the background's kind to image. Switches are
  * on or off, also written yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are
  * the rows of the table (scene/model/params.h); a solid may also have those of a material. Vectors and colours are
- * lists: [0, 1, 2]. The file's order is kept. Sections and objects may be empty. scene_read (shared_read.c) opens the file. */
+ * lists: [0, 1, 2]. The file's order is kept. Sections and objects may be empty. scene_read (shared_read.c) opens the
+ * file. */
 #include "scene/file/document.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"

@@ -24,7 +24,7 @@ typedef struct package_head {
 } package_head;
 _Static_assert(sizeof(package_head) == 56, "no padding");
 
-enum { PACKAGE_VERSION = 5 };
+enum { PACKAGE_VERSION = 6 };
 
 static package_head head_of(uint64_t size)
 {
