@@ -136,7 +136,7 @@ static status add_solid(scene *s, const char *name, const char *shape, diagnosti
 
 static status add_object(scene *s, const char *kind, const char *name, const char *shape, diagnostic *why)
 {
-    static const char *const kinds[] = {"solid", "light", "beam", "material", "mesh", "texture"};
+    static const char *const kinds[] = {"solid", "light", "beam", "material", "mesh", "texture", "data"};
     const bool is_solid = strcmp(kind, "solid") == 0;
     if (is_solid && !shape)
         return diagnose(why, STATUS_BAD_INPUT, "write solid:NAME=SHAPE, such as solid:rod=box", "%.80s has no shape",
@@ -180,7 +180,7 @@ static status apply_add(scene *s, const scene_edit *edit, const char *none, cons
 
 static const scene_edit scene_edits[] = {
     {"--add", 0, false, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
-     "add a solid, light, beam, material, mesh or texture, such as solid:rod=box,size=0.25,3,0.25", apply_add},
+     "add a solid, light, beam, material, mesh, texture or data, such as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', true, "PATH=VALUE",
      "set a parameter, or the material or shape of a solid (NAME.material, NAME.shape)", apply_set},
     {"--move", 0, true, "NAME=DX,DY,DZ",

@@ -1188,7 +1188,7 @@ refused "an unknown shape" "--add solid:x=bax: 'bax' is not a shape; did you mea
 refused "a solid without a shape" \
     "--add solid:x: x has no shape; write solid:NAME=SHAPE, such as solid:rod=box" built.yaml --add solid:x
 refused "an unknown kind" \
-    "--add ball:x: unknown kind of object 'ball'; give one of: solid, light, beam, material, mesh, texture" \
+    "--add ball:x: unknown kind of object 'ball'; give one of: solid, light, beam, material, mesh, texture, data" \
     built.yaml --add ball:x
 refused "a scene that is invalid as a whole" \
     "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \

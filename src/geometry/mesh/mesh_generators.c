@@ -8,7 +8,7 @@ status generate_finish(mesh *m, bool must_be_closed, mesh **out, diagnostic *why
 {
     status result = cancel_check(why);
     THEN(result, mesh_finish(m, why));
-    if (result == STATUS_OK && must_be_closed && !m->closed)
+    if (result == STATUS_OK && must_be_closed && (!m->closed || m->crowded))
         result = diagnose(why, STATUS_BAD_INPUT, "use lengths of similar size, or fewer segments",
                           "the generated mesh has edges too short for its size");
     if (result == STATUS_OK)
