@@ -419,12 +419,14 @@ void data_rows_details(FILE *stream, const char *file, const optical_data *d, do
     double low_nm, high_nm;
     optical_data_range(d, &low_nm, &high_nm);
     wrap_row(stream, columns, label("file", start), "%s", file);
+    /* A table alone may be of anything. */
+    const bool is_index = optical_data_law(d) || optical_data_points(d, true) > 0;
     for (int i = 0; i < LINES_ALL; i++)
-        print_data_at(stream, d, lines[i].lambda_nm, lines[i].name, columns);
-    if (isfinite(data_abbe_number(d)))
+        print_data_at(stream, d, lines[i].lambda_nm, lines[i].name + (is_index ? 0 : strlen("n_")), columns);
+    if (is_index && isfinite(data_abbe_number(d)))
         wrap_row(stream, columns, label("V_d", start), "%.4f", data_abbe_number(d));
     if (at_nm > 0.0)
-        print_data_at(stream, d, at_nm, "n_at", columns);
+        print_data_at(stream, d, at_nm, is_index ? "n_at" : "at", columns);
     wrap_row(stream, columns, label("range", start), "%s..%s nm", number_format_digits(low_nm, 9, low),
              number_format_digits(high_nm, 9, high));
     if (optical_data_law(d))
