@@ -469,7 +469,7 @@ static void layers_have_the_colors(void **state)
     const mesh *whole = s->meshes[0].data, *const * layers;
     int count;
     diagnostic why = {0};
-    worked(scene_mesh_layers(s, &s->solids[0], &layers, &count, &why), &why);
+    worked(scene_mesh_operands(s, &s->solids[0], &layers, &count, &why), &why);
     assert_int_equal(count, 2);
     for (int i = 0; i < count; i++)
         for (size_t t = 0; t < layers[i]->triangle_count; t++)
