@@ -1,8 +1,8 @@
 /* Dispersion: the refractive index as a function of the wavelength, by the formulas in which measurements and glass
  * catalogues are published, and by curves through points. Ownership: a law is a plain value. Errors: only
  * dispersion_check reports errors; the other functions are pure, cannot fail, and require a law that passes
- * dispersion_check. Wavelengths are in nm; L in the formulas is the wavelength in um. It is the wavelength in air, as in
- * a catalogue; the wavelength in vacuum, 0.03% longer, would change no index of the catalogue by more than 1e-4. */
+ * dispersion_check. Wavelengths are in nm; L in the formulas is the wavelength in um. It is the wavelength in air, as
+ * in a catalogue; the wavelength in vacuum, 0.03% longer, would change no index of the catalogue by more than 1e-4. */
 #pragma once
 
 #include "base/status.h"
