@@ -130,7 +130,7 @@ static void bound(scene *s)
     static const struct {
         const char *path;
         int64_t most;
-    } bounds[] = {{"render.width", 12},      {"render.height", 9},  {"render.depth", 5},    {"render.samples", 2},
+    } bounds[] = {{"render.width", 12},      {"render.height", 9},  {"render.depth", 5},    {"render.samples", 1},
                   {"render.wavelengths", 3}, {"render.threads", 2}, {"render.photons", 300}};
     const int64_t now[] = {s->render.width,       s->render.height,  s->render.depth,  s->render.samples,
                            s->render.wavelengths, s->render.threads, s->render.photons};

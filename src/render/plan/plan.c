@@ -321,12 +321,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     if (!material_is_mirror(m) && !m->color_values)
         return m;
     material *other = &p->substitutes[solid_index];
-    *other = *m;
-    if (m->color_values) {
-        double rgb[3];
-        optical_data_rgb(m->color_values, rgb);
-        other->color = vec3_make(rgb[0], rgb[1], rgb[2]);
-    }
+    *other = material_as_measured(m);
     if (!material_is_mirror(m))
         return other;
     const double both = m->reflectivity + m->transparency;

@@ -271,24 +271,23 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
 
 /* A fraction of light above 1 is probably in percent; a little more is the noise of a measurement. */
 #define FRACTION_MOST 1.05
-static status check_data_of(const scene *s, const solid *owner, diagnostic *why)
+static status check_data_of(const scene *s, const material *m, const char *owner, diagnostic *why)
 {
-    const material *m = &owner->surface;
     const char *const names[] = {m->medium_data, m->color_data, m->absorb_data};
     const optical_data *const values[] = {NULL, m->color_values, m->absorb_values}; /* those of curves */
     double least, most = 0.0;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (names[i][0] && object_find(s, PARAM_DATA, names[i]) < 0)
-            return unknown(s, PARAM_DATA, owner->name, names[i], why);
+            return unknown(s, PARAM_DATA, owner, names[i], why);
     for (size_t i = 1; i < sizeof names / sizeof *names; i++)
         if (values[i] && !optical_data_has_first(values[i]))
             return diagnose(why, STATUS_BAD_INPUT, "choose a table of a wavelength and a value",
-                            "%.80s: the data %.80s have only k", owner->name, names[i]);
+                            "%.80s: the data %.80s have only k", owner, names[i]);
     if (m->color_values)
         optical_data_extremes(m->color_values, &least, &most);
     if (most > FRACTION_MOST)
         return diagnose(why, STATUS_BAD_INPUT, "if it is in percent, set its scale to 0.01",
-                        "%.80s: the data %.80s reach %g, but a surface reflects at most 1", owner->name, m->color_data,
+                        "%.80s: the data %.80s reach %g, but a surface reflects at most 1", owner, m->color_data,
                         most);
     return STATUS_OK;
 }
@@ -310,7 +309,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     const mesh_entry *m = scene_mesh_of(s, owner);
     if (owner->surface.texture[0] && !scene_find_texture(s, owner->surface.texture))
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
-    TRY(check_data_of(s, owner, why));
+    TRY(check_data_of(s, &owner->surface, owner->name, why));
     if (owner->points[0])
         TRY(check_points(s, owner, why));
     if (!shape_of(&owner->shape)->triangles)
@@ -492,7 +491,8 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
     case PARAM_BEAM: return check_beam(&s->beams[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
-    case PARAM_MATERIAL: /* checked with each solid that has it */
+    case PARAM_MATERIAL: /* all else is checked with each solid that has it */
+        return check_data_of(s, &s->materials[index].value, s->materials[index].name, why);
     case PARAM_GROUP_COUNT: break;
     }
     return STATUS_OK;

@@ -87,7 +87,7 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
                             .opacity = 1.0,
                             .vertex_colors = !named && solid_shows_vertex_colors(s, owner)};
     if (named)
-        mat.surface = *named;
+        mat.surface = material_as_measured(named);
     else if (given)
         apply_file_material(&mat, base, given);
     if (s->render.transmission == TRANSMISSION_SIMPLE) {

@@ -280,6 +280,17 @@ static double absorption_of_k(const material *m, double lambda_nm)
                                              : 0.0;
 }
 
+material material_as_measured(const material *m)
+{
+    material measured = *m;
+    double rgb[3];
+    if (!m->color_values)
+        return measured;
+    optical_data_rgb(m->color_values, rgb);
+    measured.color = vec3_make(rgb[0], rgb[1], rgb[2]);
+    return measured;
+}
+
 double material_absorption_at(const material *m, double lambda_nm)
 {
     const double own = m->absorb_values ? optical_data_coefficient(m->absorb_values, lambda_nm)

@@ -77,6 +77,9 @@ const char *surrounding_medium_name(const background *b);
         611.4, 549.1, 464.3 \
     }
 
+/* The material with the colour of its color_data in daylight, if it has them. */
+material material_as_measured(const material *m);
+
 /* Absorption coefficients in 1/m. */
 vec3 material_absorption(const material *m);
 double material_absorption_at(const material *m, double lambda_nm);
