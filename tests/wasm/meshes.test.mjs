@@ -305,11 +305,12 @@ test('other formats, missing files and bad lines are errors with a remedy', asyn
   );
 });
 
-/* A list makes vertices of four bytes take 64 in memory: 2^24 vertices fill half of the module's 2 GiB, and one more
+/* A list makes vertices of nine bytes take 64 in memory: 2^24 vertices fill half of the module's 2 GiB, and one more
  * doubles them. A module of its own, because memory never shrinks. */
 test('a PLY file that does not fit into memory is not called truncated', async () => {
   const count = (1 << 24) + 1;
-  const properties = ['uchar x', 'uchar y', 'uchar z', 'list uchar uchar a'].map((p) => `property ${p}\n`).join('');
+  const numbers = ['x', 'y', 'z', 'nx', 'ny', 'nz', 's', 't'].map((name) => `property uchar ${name}\n`).join('');
+  const properties = `${numbers}property list uchar uchar a\n`;
   const header = `ply\nformat binary_little_endian 1.0\nelement vertex ${count}\n${properties}end_header\n`;
   const own = await cuvetteOf('simd128');
   const read = async (bytes) => {
@@ -320,7 +321,7 @@ test('a PLY file that does not fit into memory is not called truncated', async (
       thing.destroy();
     }
   };
-  await assert.rejects(read(Buffer.concat([bytesOf(header), Buffer.alloc(4 * count)])), /out of memory/);
+  await assert.rejects(read(Buffer.concat([bytesOf(header), Buffer.alloc(9 * count)])), /out of memory/);
   await assert.rejects(read(bytesOf(header)), /the file ends within vertex 1 of 16777217/);
 });
 
