@@ -287,8 +287,7 @@ static status check_data_of(const scene *s, const material *m, const char *owner
         optical_data_extremes(m->color_values, &least, &most);
     if (most > FRACTION_MOST)
         return diagnose(why, STATUS_BAD_INPUT, "if it is in percent, set its scale to 0.01",
-                        "%.80s: the data %.80s reach %g, but a surface reflects at most 1", owner, m->color_data,
-                        most);
+                        "%.80s: the data %.80s reach %g, but a surface reflects at most 1", owner, m->color_data, most);
     return STATUS_OK;
 }
 
