@@ -311,23 +311,55 @@ static status check_table(const dispersion *law, diagnostic *why)
     return STATUS_OK;
 }
 
-/* A resonance, where the index is infinite, could fall between the samples of the visible range. */
-static status check_resonances(const dispersion *law, diagnostic *why)
+/* Wavelengths at which a denominator is 0; their number. */
+static int resonances_of(const dispersion *law, double at_nm[DISPERSION_TERMS_MAX])
 {
-    for (int i = 1 + law->count % 2; i < law->count; i += 2) {
-        const double C = law->coefficient[i];
-        double lambda_nm = 0.0;
-        if (law->kind == DISPERSION_SELLMEIER || law->kind == DISPERSION_SELLMEIER_FROM)
-            lambda_nm = 1000.0 * sqrt(C > 0.0 ? C : 0.0);
-        else if (law->kind == DISPERSION_SELLMEIER_LENGTHS)
-            lambda_nm = 1000.0 * fabs(C);
-        else if (C > 0.0)
-            lambda_nm = 1000.0 / sqrt(C);
-        if (lambda_nm >= VISIBLE_LOW_NM && lambda_nm <= VISIBLE_HIGH_NM)
-            return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind),
-                            "the dispersion law '%s' has a resonance at %.6g nm, in the visible",
-                            dispersion_name(law->kind), lambda_nm);
+    const double *a = law->coefficient;
+    int count = 0;
+    switch (law->kind) {
+    case DISPERSION_SELLMEIER:
+    case DISPERSION_SELLMEIER_FROM:
+        for (int i = 1 + law->count % 2; i < law->count; i += 2)
+            at_nm[count++] = 1000.0 * sqrt(a[i] > 0.0 ? a[i] : 0.0);
+        break;
+    case DISPERSION_SELLMEIER_LENGTHS:
+        for (int i = 1; i < law->count; i += 2)
+            at_nm[count++] = 1000.0 * fabs(a[i]);
+        break;
+    case DISPERSION_GAS:
+    case DISPERSION_GAS_FROM:
+        for (int i = 1 + law->count % 2; i < law->count; i += 2)
+            at_nm[count++] = a[i] > 0.0 ? 1000.0 / sqrt(a[i]) : 0.0;
+        break;
+    case DISPERSION_TWO_RESONANCES:
+        for (int i = 1; i < 9; i += 4) {
+            const double squared = a[i] != 0.0 && a[i + 2] != 0.0 ? power(a[i + 2], a[i + 3]) : 0.0;
+            at_nm[count++] = 1000.0 * sqrt(squared > 0.0 ? squared : 0.0);
+        }
+        break;
+    case DISPERSION_HERZBERGER: at_nm[count++] = 1000.0 * sqrt(0.028); break;
+    case DISPERSION_RETRO:
+    case DISPERSION_EXOTIC: at_nm[count++] = 1000.0 * sqrt(a[2] > 0.0 ? a[2] : 0.0); break;
+    case DISPERSION_CONSTANT:
+    case DISPERSION_POLYNOMIAL:
+    case DISPERSION_CAUCHY_POWERS:
+    case DISPERSION_CAUCHY:
+    case DISPERSION_TABLE:
+    case DISPERSION_CURVE: break;
     }
+    return count;
+}
+
+/* A resonance, where the index is infinite, could fall between the samples of the visible range. */
+static status check_resonances(const dispersion *law, double low_nm, double high_nm, diagnostic *why)
+{
+    double at_nm[DISPERSION_TERMS_MAX];
+    const int count = resonances_of(law, at_nm);
+    for (int i = 0; i < count; i++)
+        if (at_nm[i] >= low_nm && at_nm[i] <= high_nm)
+            return diagnose(why, STATUS_BAD_INPUT, remedy_for(law->kind),
+                            "the dispersion law '%s' has a resonance at %.6g nm, %s", dispersion_name(law->kind),
+                            at_nm[i], low_nm == VISIBLE_LOW_NM ? "in the visible" : "within its range");
     return STATUS_OK;
 }
 
@@ -338,12 +370,6 @@ status dispersion_check_numbers(const dispersion *law, diagnostic *why)
         law->kind == DISPERSION_TWO_RESONANCES)
         return check_powers(law, why);
     return law->kind == DISPERSION_TABLE || law->kind == DISPERSION_CURVE ? check_table(law, why) : STATUS_OK;
-}
-
-static bool has_resonances(dispersion_kind kind)
-{
-    return kind == DISPERSION_SELLMEIER || kind == DISPERSION_SELLMEIER_LENGTHS || kind == DISPERSION_GAS ||
-           kind == DISPERSION_SELLMEIER_FROM || kind == DISPERSION_GAS_FROM;
 }
 
 static status check_visible(const dispersion *law, diagnostic *why)
@@ -366,7 +392,20 @@ static status check_visible(const dispersion *law, diagnostic *why)
 status dispersion_check(const dispersion *law, diagnostic *why)
 {
     TRY(dispersion_check_numbers(law, why));
-    if (has_resonances(law->kind))
-        TRY(check_resonances(law, why));
+    TRY(check_resonances(law, VISIBLE_LOW_NM, VISIBLE_HIGH_NM, why));
     return check_visible(law, why);
+}
+
+status dispersion_check_range(const dispersion *law, diagnostic *why)
+{
+    enum { STEPS = 100 };
+    for (int i = 0; i <= STEPS; i++) {
+        const double lambda_nm = law->low_nm + (law->high_nm - law->low_nm) * i / STEPS;
+        const double n = dispersion_index(law, lambda_nm);
+        if (!(n > 0.0 && n <= index_high))
+            return diagnose(why, STATUS_BAD_INPUT, "check its coefficients and its range of wavelengths",
+                            "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n,
+                            lambda_nm);
+    }
+    return check_resonances(law, law->low_nm, law->high_nm, why);
 }

@@ -61,6 +61,8 @@ status dispersion_check(const dispersion *law, diagnostic *why);
 /* The first part of it, what does not depend on the wavelengths: the number of coefficients, and that they, the powers
  * and the range are valid. */
 status dispersion_check_numbers(const dispersion *law, diagnostic *why);
+/* For a law that passes this and states its range: its index is above 0 and at most 100 there, without a resonance. */
+status dispersion_check_range(const dispersion *law, diagnostic *why);
 
 /* Whether the law was measured over all of low_nm..high_nm. If no range is stated, a table covers its wavelengths and a
  * formula everything. */

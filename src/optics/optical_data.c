@@ -145,20 +145,6 @@ static status check_curve(optical_curve c, bool is_k, diagnostic *why)
     return STATUS_OK;
 }
 
-static status check_law(const dispersion *law, diagnostic *why)
-{
-    enum { STEPS = 100 };
-    for (int i = 0; i <= STEPS; i++) {
-        const double lambda_nm = law->low_nm + (law->high_nm - law->low_nm) * i / STEPS;
-        const double n = dispersion_index(law, lambda_nm);
-        if (!(n > 0.0 && n <= 100.0))
-            return diagnose(why, STATUS_BAD_INPUT, "check its coefficients and its range of wavelengths",
-                            "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n,
-                            lambda_nm);
-    }
-    return STATUS_OK;
-}
-
 static status create(const dispersion *law, optical_curve first, optical_curve last, const optical_data **out,
                      diagnostic *why)
 {
@@ -189,7 +175,7 @@ status optical_data_create(const dispersion *law, optical_curve first, optical_c
     TRY(check_curve(first, false, why));
     TRY(check_curve(last, true, why));
     if (law)
-        TRY(check_law(law, why));
+        TRY(dispersion_check_range(law, why));
     return create(law, first, last, out, why);
 }
 

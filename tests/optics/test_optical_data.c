@@ -130,6 +130,21 @@ static void wrong_data_are_refused(void **state)
         {{0}, good, 1, absorbing, 1, "extinction index k at 400 nm is -0.1"},
         /* a resonance at 600 nm, below which n^2 is negative */
         {{DISPERSION_SELLMEIER, 2, {5, 0.36}, 400, 800}, NULL, 0, NULL, 0, "gives the index"},
+        /* weak ones, between any samples */
+        {{DISPERSION_SELLMEIER_FROM, 5, {1.2, 0.3, 0.01, 1e-9, 0.2916}, 400, 801},
+         NULL,
+         0,
+         NULL,
+         0,
+         "resonance at 540 nm"},
+        {{DISPERSION_GAS_FROM, 3, {0.5, 1e-9, 4}, 401, 800}, NULL, 0, NULL, 0, "resonance at 500 nm"},
+        {{DISPERSION_EXOTIC, 6, {2, 1e-9, 0.25, 0, 0, 1}, 401, 800}, NULL, 0, NULL, 0, "resonance at 500 nm"},
+        {{DISPERSION_TWO_RESONANCES, 9, {2, 0, 0, 0, 0, 1e-9, 0, 0.5, 2}, 401, 800},
+         NULL,
+         0,
+         NULL,
+         0,
+         "resonance at 500 nm"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         const optical_data *d;

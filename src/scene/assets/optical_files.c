@@ -278,7 +278,7 @@ static status read_glass_line(optical_reader *r, glass_lines *g, const char *lin
 {
     const bool is_word = isupper((unsigned char)line[0]) && isupper((unsigned char)line[1]);
     if (strncmp(line, "CD ", 3) == 0)
-        g->terms = 0, read_coefficients(g, line + 3);
+        memset(g->c, 0, sizeof g->c), g->terms = 0, read_coefficients(g, line + 3);
     else if (g->in_c && !is_word)
         read_coefficients(g, line);
     else
