@@ -399,6 +399,9 @@ status dispersion_check(const dispersion *law, diagnostic *why)
 status dispersion_check_range(const dispersion *law, diagnostic *why)
 {
     enum { STEPS = 100 };
+    if (!(law->low_nm > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "give its lowest and its highest wavelength",
+                        "its range of wavelengths begins at %g nm", law->low_nm);
     for (int i = 0; i <= STEPS; i++) {
         const double lambda_nm = law->low_nm + (law->high_nm - law->low_nm) * i / STEPS;
         const double n = dispersion_index(law, lambda_nm);

@@ -168,6 +168,7 @@ static void a_glass_of_a_catalogue_is_found(void **state)
     d = parsed("a.agf", "NM A 2 1 1 1\nCD 1 0.01 9 0.02\nCD 0.5 0.01\nLD 0.3 1\n", "", ""); /* the last ones only */
     assert_near(optical_data_at(d, 500), sqrt(1 + 0.5 * 0.25 / 0.24), 1e-15);
     optical_data_release(d);
+    refused("a.agf", "NM A 2 1 1 1\nCD 1 0.01\nLD 0 0\n", "", "", 0, "begins at 0 nm");
     refused("a.agf", GLASS("14", "1"), "", "", 4, "formula 14");
 }
 
