@@ -396,19 +396,28 @@ status dispersion_check(const dispersion *law, diagnostic *why)
     return check_visible(law, why);
 }
 
+static status check_index_at(const dispersion *law, double lambda_nm, diagnostic *why)
+{
+    const double n = dispersion_index(law, lambda_nm);
+    return n > 0.0 && n <= index_high
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "check its coefficients and its range of wavelengths",
+                          "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n,
+                          lambda_nm);
+}
+
+/* At each nanometre where light is measured, and at 1000 wavelengths in equal ratios. */
 status dispersion_check_range(const dispersion *law, diagnostic *why)
 {
-    enum { STEPS = 100 };
-    if (!(law->low_nm > 0.0))
+    enum { STEPS = 1000, FIRST_NM = 100, LAST_NM = 3000 };
+    const double low = law->low_nm, high = law->high_nm;
+    if (!(low > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "give its lowest and its highest wavelength",
-                        "its range of wavelengths begins at %g nm", law->low_nm);
-    for (int i = 0; i <= STEPS; i++) {
-        const double lambda_nm = law->low_nm + (law->high_nm - law->low_nm) * i / STEPS;
-        const double n = dispersion_index(law, lambda_nm);
-        if (!(n > 0.0 && n <= index_high))
-            return diagnose(why, STATUS_BAD_INPUT, "check its coefficients and its range of wavelengths",
-                            "its formula (%s) gives the index %g at %.6g nm", dispersion_formula(law->kind), n,
-                            lambda_nm);
-    }
-    return check_resonances(law, law->low_nm, law->high_nm, why);
+                        "its range of wavelengths begins at %g nm", low);
+    for (int nm = FIRST_NM; nm <= LAST_NM; nm++)
+        if (nm >= low && nm <= high)
+            TRY(check_index_at(law, nm, why));
+    for (int i = 0; i <= STEPS; i++)
+        TRY(check_index_at(law, fmin(low * elementary_pow(high / low, (double)i / STEPS), high), why));
+    return check_resonances(law, low, high, why);
 }
