@@ -414,10 +414,11 @@ status dispersion_check_range(const dispersion *law, diagnostic *why)
     if (!(low > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "give its lowest and its highest wavelength",
                         "its range of wavelengths begins at %g nm", low);
+    TRY(check_resonances(law, low, high, why));
     for (int nm = FIRST_NM; nm <= LAST_NM; nm++)
         if (nm >= low && nm <= high)
             TRY(check_index_at(law, nm, why));
     for (int i = 0; i <= STEPS; i++)
         TRY(check_index_at(law, fmin(low * elementary_pow(high / low, (double)i / STEPS), high), why));
-    return check_resonances(law, low, high, why);
+    return STATUS_OK;
 }

@@ -129,7 +129,9 @@ static void wrong_data_are_refused(void **state)
         {{0}, endless, 1, NULL, 0, "the value at 400 nm is inf"},
         {{0}, good, 1, absorbing, 1, "extinction index k at 400 nm is -0.1"},
         /* a resonance at 600 nm, below which n^2 is negative */
-        {{DISPERSION_SELLMEIER, 2, {5, 0.36}, 400, 800}, NULL, 0, NULL, 0, "gives the index"},
+        {{DISPERSION_SELLMEIER, 2, {5, 0.36}, 400, 800}, NULL, 0, NULL, 0, "resonance at 600 nm"},
+        /* n^2 is negative below 632 nm */
+        {{DISPERSION_POLYNOMIAL, 3, {-0.4, 1, 2}, 400, 800}, NULL, 0, NULL, 0, "gives the index"},
         /* weak ones, between any samples */
         {{DISPERSION_SELLMEIER_FROM, 5, {1.2, 0.3, 0.01, 1e-9, 0.2916}, 400, 801},
          NULL,
