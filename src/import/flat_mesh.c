@@ -54,7 +54,7 @@ void join_color(flat_mesh *flat, const double color[3], double numbers[JOIN_NUMB
     for (int c = 0; c < 3; c++) {
         if (!flat->clamped && (color[c] > 1 || color[c] < 0)) {
             flat->clamped = true;
-            flat_note(flat, "colours of vertices that are not within 0 to 1 are taken as the nearest that is");
+            flat_note(flat, "colours of vertices outside 0 to 1 are clamped");
         }
         numbers[JOIN_COLOR + c] = color[c] > 0 ? (double)(float)(color[c] < 1 ? color[c] : 1) : 0;
     }

@@ -358,7 +358,7 @@ bool unused_data(const inert_case *c)
     for (size_t i = 0; i < s->light_count; i++)
         if (s->lights[i].spectrum == LAMP_DATA && strcmp(s->lights[i].spectrum_data, c->name) == 0)
             return false;
-    return inert_say(c, "unused-data", remedy.text, "no visible solid and no light has these data");
+    return inert_say(c, "unused-data", remedy.text, "no visible solid or light uses these data");
 }
 
 static bool ends_in(const char *path, const char *ending)

@@ -406,7 +406,7 @@ static void refused(mesh *m, double weld, const char *text)
     refused_with(m, weld, text, NULL);
 }
 
-#define SEPARATE "separate the parts, or remove what they share"
+#define SEPARATE "separate the parts, or remove the faces that they share"
 
 /* Welding is named where it is the cause only. */
 static void crowded_edges_are_refused(void **state)

@@ -39,7 +39,7 @@ static void assert_colors(const mesh_import *got, const double expected[9], doub
     "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ colors "element face 1\nproperty list uchar int vertex_indices\n" \
     "end_header\n"
 #define FACE "3 0 1 2\n"
-#define CLAMPED "colours of vertices that are not within 0 to 1 are taken as the nearest that is"
+#define CLAMPED "colours of vertices outside 0 to 1 are clamped"
 #define CLEAR "the alpha of vertices is ignored"
 
 static void ply_and_obj_files_have_srgb(void **state)

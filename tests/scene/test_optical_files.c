@@ -15,6 +15,7 @@
 #include "optics/media.h"
 #include "render_fixture.h"
 #include "scene/assets/optical_files.h"
+#include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
@@ -430,6 +431,62 @@ static void a_lamp_from_a_file_has_its_spectrum(void **state)
                1e-6);
 }
 
+/* Under a line, a surface has the brightness of its reflectance there; a smooth spectrum of its colour would not. */
+static void a_reflectance_is_that_of_each_wavelength(void **state)
+{
+    (void)state;
+    static const char edge[] = "380,0\n580,0\n585,0.3\n600,0.3\n610,1\n780,1\n";
+    double seen[2];
+    for (int white = 0; white < 2; white++) {
+        folder f;
+        char text[500];
+        snprintf(text, sizeof text,
+                 "render: {width: 1, height: 1, spectrum: spectral}\n"
+                 "camera: {position: [0, 0, -4], target: [0, 0, 0]}\nbackground: {color: [0, 0, 0]}\n"
+                 "data: {d: {file: edge.csv}}\n"
+                 "lights: {l: {position: [0, 0, -4], spectrum: line, line_nm: 590}}\n"
+                 "solids: {a: {shape: sphere, diffuse: 1, %s}}\n",
+                 white ? "color: [1, 1, 1]" : "color_data: d");
+        scene *s = scene_with(&f, "edge.csv", edge, text);
+        render_result *r = render(s);
+        seen[white] = film_value(r->img, 0, 0, 1);
+        render_result_destroy(r);
+        end(&f, s);
+    }
+    assert_true(seen[1] > 0.1);
+    assert_near(seen[0] / seen[1], 0.3, 1e-6);
+}
+
+/* Columns and glasses have any names; these survive in a written scene. */
+static void columns_and_glasses_have_any_names(void **state)
+{
+    (void)state;
+    static const char *const columns[] = {"Sample 2", "3", "%R (mean)", "a: b #c", "null"};
+    for (size_t i = 0; i < COUNT(columns); i++) {
+        folder f;
+        char table[100], text[300];
+        snprintf(table, sizeof table, "nm;x;%s\n400;1;0.25\n700;1;0.25\n", i == 1 ? "y" : columns[i]);
+        snprintf(text, sizeof text,
+                 "data: {d: {file: t.csv, column: '%s'}}\nsolids: {a: {shape: sphere, color_data: d}}\n", columns[i]);
+        scene *s = scene_with(&f, "t.csv", table, text);
+        assert_near(optical_data_at(s->solids[0].surface.color_values, 500), 0.25, 0);
+        char *written;
+        scene *again;
+        assert_int_equal(scene_write_text(s, "", false, &written, NULL), STATUS_OK);
+        assert_int_equal(scene_read_text("again.yaml", written, strlen(written), &again, NULL), STATUS_OK);
+        assert_string_equal(again->data[0].column, columns[i]);
+        scene_destroy(again);
+        free(written);
+        end(&f, s);
+    }
+    scene *s;
+    static const char glass[] = "data: {d: {file: zeon.agf, glass: 480R}, e: {file: s.agf, glass: K-PSFn1(M)}}\n";
+    assert_int_equal(scene_read_text("a.yaml", glass, strlen(glass), &s, NULL), STATUS_OK);
+    assert_string_equal(s->data[0].glass, "480R");
+    assert_int_equal(scene_set(s, "d.glass", "a\tb", NULL), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
 /* Names as makers and shops write them. */
 static void usual_names_of_media_are_understood(void **state)
 {
@@ -523,6 +580,8 @@ int main(void)
         cmocka_unit_test(a_medium_is_read_from_a_file),
         cmocka_unit_test(k_makes_an_opaque_solid_a_metal),
         cmocka_unit_test(a_reflectance_from_a_file_is_the_colour),
+        cmocka_unit_test(a_reflectance_is_that_of_each_wavelength),
+        cmocka_unit_test(columns_and_glasses_have_any_names),
         cmocka_unit_test(absorption_from_a_file_is_that_of_a_list),
         cmocka_unit_test(a_lamp_from_a_file_has_its_spectrum),
         cmocka_unit_test(usual_names_of_media_are_understood),

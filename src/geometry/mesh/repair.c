@@ -555,8 +555,8 @@ static status check_triangles(const repair *r, diagnostic *why)
         return STATUS_OK;
     return refuse(r->m, r->n.crowded, "more than two triangles meet",
                   is_welded(r, r->n.crowded)
-                      ? "separate the parts, or remove what they share, or use another distance to weld"
-                      : "separate the parts, or remove what they share",
+                      ? "separate the parts, or remove the faces that they share, or use another distance to weld"
+                      : "separate the parts, or remove the faces that they share",
                   why);
 }
 

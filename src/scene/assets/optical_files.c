@@ -116,7 +116,7 @@ static status set_formula(optical_reader *r, int number, double *c, int count)
         [7] = {DISPERSION_HERZBERGER, 6},     [8] = {DISPERSION_RETRO, 4},          [9] = {DISPERSION_EXOTIC, 6}};
     dispersion *law = &r->law;
     if (number < 1 || number > 9)
-        return wrong(r, "use formulas 1 to 9", "it has formula %d, which is not known", number);
+        return wrong(r, "use formulas 1 to 9", "formula %d is unknown", number);
     for (; count < of[number].least; count++)
         c[count] = 0.0;
     for (int i = 2; number == 1 && i < count; i += 2) /* lengths C instead of their squares */
@@ -236,7 +236,7 @@ static status set_glass_formula(optical_reader *r, int number, const double *c)
     case 7: return set_formula(r, 4, (double[16]){c[0], c[1], 0, c[2], 1, 0, 0, 0, 0, -c[3], 2}, 11);
     case 8: return set_formula(r, 4, (double[16]){c[0], c[1], 2, c[2], 1, 0, 0, 0, 0, -c[3], 2}, 11);
     case 9: return set_formula(r, 4, (double[16]){c[0], c[1], 2, c[2], 1, c[3], 2, c[4], 1}, 9);
-    default: return wrong(r, "use a formula from 1 to 13", "the glass has the formula %d, which is not known", number);
+    default: return wrong(r, "use a formula from 1 to 13", "the glass has the unknown formula %d", number);
     }
 }
 
@@ -447,8 +447,9 @@ static status begin_table(table_reader *t)
     const bool headed = t->header.count >= 2;
     t->column = *name ? column_named(&t->header, name) : 1;
     if (t->column < 1 || t->column >= t->line.count)
-        return wrong(t->r, headed ? "give a column of its header, or a number from 2" : "give a number from 2",
-                     *name ? "it has no column '%.60s'" : "it has fewer than two columns%.0s", name);
+        return *name ? wrong(t->r, headed ? "give a column of its header, or a number from 2" : "give a number from 2",
+                             "it has no column '%.60s'", name)
+                     : wrong(t->r, "give lines of a wavelength and a value", "it has fewer than two columns");
     t->k = -1;
     if (*name || t->line.count < 3)
         return STATUS_OK;

@@ -204,13 +204,14 @@ static status put_row(scene_writer *w, const char *name, const param_place *at, 
         return code;
     put_section(w);
     begin_line(w, at->row->name);
-    if (at->row->type != PARAM_PATH) {
-        put_value(w, at->row, value);
-        return STATUS_OK;
-    }
     char label[2 * SCENE_NAME_MAX];
     snprintf(label, sizeof label, "%s.%s", name, at->row->name);
-    return put_path(w, label, at->row, value);
+    if (at->row->type == PARAM_PATH)
+        return put_path(w, label, at->row, value);
+    if (at->row->type == PARAM_WORD)
+        TRY(write_check_text(label, value, w->why));
+    put_value(w, at->row, value);
+    return STATUS_OK;
 }
 
 static status visit(void *context, const param_place *at)

@@ -246,7 +246,7 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
             why, STATUS_BAD_INPUT,
             hole->fault == MESH_ONE_SIDED
                 ? "cut the mesh, or make the solid opaque (transparency 0)"
-                : "separate the parts, or remove what they share, or make the solid opaque (transparency 0)",
+                : "separate the parts, or remove the faces that they share, or make the solid opaque (transparency 0)",
             "%.80s is transparent, but its mesh %.80s has no inside: at the edge from (%g, %g, %g) to (%g, %g, %g), "
             "which %d share, triangle %zu %s",
             owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, hole->sharing, hole->triangle, faults[hole->fault]);

@@ -304,6 +304,20 @@ static void forget_loaded(scene *s, const param_place *at, param_value value)
     }
 }
 
+static bool names_data(const param *row)
+{
+    return row->names && strcmp(row->names, param_group_name(PARAM_DATA)) == 0;
+}
+
+/* Without loaded data, as while a file is read, there is nothing to follow. */
+static bool has_loaded_data(const scene *s)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->data_count; i++)
+        any |= s->data[i].data != NULL;
+    return any;
+}
+
 static void store(scene *s, const param_place *at, param_value value)
 {
     forget_medium(s, at);
@@ -320,7 +334,7 @@ static void store(scene *s, const param_place *at, param_value value)
     for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
-    if (at->object_group == PARAM_DATA || (row->type == PARAM_WORD && s->data_count > 0))
+    if (at->object_group == PARAM_DATA || (names_data(row) && has_loaded_data(s)))
         scene_follow_data(s);
 }
 

@@ -59,6 +59,7 @@ typedef struct param {
     const char *automatic;      /* PARAM_INT: a word for a value outside lowest .. highest; NULL: none */
     int64_t automatic_value;    /* the value that `automatic` stands for */
     size_t offset;              /* in the group's struct */
+    const char *names;          /* PARAM_WORD: what kind of object it names ("texture"); NULL: any text */
     param_slider slider;        /* declared only if the slider that param_slider_of derives is unsuitable */
     bool not_zero;              /* 0, or a 0 among the elements, is out of range */
     bool coefficient;           /* PARAM_COLOR: an absorption coefficient of each channel, not a colour */
@@ -72,7 +73,7 @@ typedef struct param {
 
 size_t param_count(void);
 const param *param_at(size_t index);
-/* "render", "camera", "background", "mesh", "texture", "light", "beam", "material", "solid" */
+/* "render", "camera", "background", "mesh", "texture", "data", "light", "beam", "material", "solid" */
 const char *param_group_name(param_group group);
 /* The row of a group by its name, or NULL. PARAM_SOLID also finds material rows, which apply to a solid's surface. */
 const param *param_find(param_group group, const char *name);

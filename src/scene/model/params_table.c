@@ -411,7 +411,7 @@ static const param table[] = {
            "replace the colour"),
     {PARAM_LIGHT, "spectrum_data", PARAM_WORD, "", 0, 0, false, "",
      "data with the spectral power of the light by wavelength, in any unit, if spectrum is data", NULL,
-     OF(light, spectrum_data)},
+     OF(light, spectrum_data), .names = "data"},
     REAL(PARAM_LIGHT, light, temperature_k, "K", LAMP_COLDEST_K, LAMP_HOTTEST_K, "2856",
          "temperature of a black body; 2856: CIE illuminant A, an incandescent lamp"),
     REAL(PARAM_LIGHT, light, line_nm, "nm", OBSERVER_LOW_NM, OBSERVER_HIGH_NM, "632.8",
@@ -474,7 +474,7 @@ static const param table[] = {
     {PARAM_MATERIAL, "color_data", PARAM_WORD, "", 0, 0, false, "",
      "data with the reflectance of the surface by wavelength, 0 to 1, or of a transparent solid the transmittance over "
      "tint_distance; replaces color",
-     NULL, OF(material, color_data)},
+     NULL, OF(material, color_data), .names = "data"},
     REAL(PARAM_MATERIAL, material, ambient, "", 0, 1, "0", "k_a of the Phong model"),
     REAL(PARAM_MATERIAL, material, diffuse, "", 0, 1, "0", "k_d of the Phong model"),
     REAL(PARAM_MATERIAL, material, specular, "", 0, 1, "0", "k_s of the Phong model"),
@@ -504,7 +504,7 @@ static const param table[] = {
     {PARAM_MATERIAL, "medium_data", PARAM_WORD, "", 0, 0, false, "",
      "data with the refractive index, if medium is data; k makes a transparent medium absorb, and an opaque one a "
      "metal",
-     NULL, OF(material, medium_data)},
+     NULL, OF(material, medium_data), .names = "data"},
     REAL(PARAM_MATERIAL, material, extraordinary_ior, "", 0, 5, "0",
          "extraordinary index of a uniaxial crystal, relative to vacuum, at every wavelength, for integrator whitted; "
          "its ordinary index is set by ior or medium; 0: not a crystal"),
@@ -539,7 +539,7 @@ static const param table[] = {
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
     {PARAM_MATERIAL, "absorb_data", PARAM_WORD, "", 0, 0, false, "",
      "data with the Beer-Lambert absorption coefficient by wavelength, 1/m; replaces absorb_per_m and absorb_spectrum",
-     NULL, OF(material, absorb_data)},
+     NULL, OF(material, absorb_data), .names = "data"},
     REAL(PARAM_MATERIAL, material, scatter_per_m, "1/m", 0, 1e9, "0",
          "scattering coefficient of a transparent solid's medium (milk, fog), for integrator path: over a length d, "
          "exp(-scatter_per_m d) of the light is not scattered; 0: clear"),
@@ -550,7 +550,7 @@ static const param table[] = {
              "distance in a transparent solid over which white light is filtered to 'color'; absorption by "
              "absorb_per_m is added"),
     {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "texture whose colour multiplies 'color'", NULL,
-     OF(material, texture)},
+     OF(material, texture), .names = "texture"},
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
          "side length of one copy of the texture, on solids other than meshes; 0: one per face (on a plane: 1 scene "
          "unit)"),
@@ -621,11 +621,11 @@ static const param table[] = {
     ASPHERIC(2, 8, 2, "1/scene units^7"),
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edge lengths along x, y and z", NULL,
      SHAPE(shape.size)},
-    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh)},
+    {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh), .names = "mesh"},
     {PARAM_SOLID, "points", PARAM_WORD, "", 0, 0, false, "",
      "name of a mesh with a file of points (.xyz): a copy of the solid is at each of them, along the solid's own axes "
      "from its position",
-     NULL, SHAPE(points)},
+     NULL, SHAPE(points), .names = "mesh"},
     {PARAM_SOLID, "scale", PARAM_VECTOR, "", -FAR, FAR, false, "1,1,1",
      "of a mesh, or of points: along the solid's own axes; a negative number mirrors", NULL, SHAPE(shape.scale),
      .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},

@@ -36,6 +36,14 @@ static void choice_text(const param *row, char *text, size_t size)
         used += snprintf(text + used, size - (size_t)used, "%s%s", i ? ", " : "", row->choices[i]);
 }
 
+static void word_text(const param *row, char *text, size_t size)
+{
+    if (row->names)
+        snprintf(text, size, strcmp(row->names, "data") == 0 ? "name of %s" : "name of a %s", row->names);
+    else
+        snprintf(text, size, "text of at most %d bytes", (int)SCENE_NAME_MAX);
+}
+
 static char *element_range_text(const param *row, bool one_element, char *text, size_t size)
 {
     char interval[2 * NUMBER_TEXT_MAX + 16];
@@ -45,7 +53,7 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
     else if (row->type == PARAM_PATH)
         snprintf(text, size, "path of a file");
     else if (row->type == PARAM_WORD)
-        snprintf(text, size, "name of a %s", strcmp(row->name, "texture") == 0 ? row->name : "mesh");
+        word_text(row, text, size);
     else if (row->type == PARAM_LIST && !one_element)
         snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
     else if (is_vector(row) && !one_element)
@@ -366,8 +374,11 @@ static status parse_word(const param *row, const char *label, const char *text, 
 {
     if (strlen(text) > SCENE_NAME_MAX)
         return wrong(row, false, why, "%s: the name is longer than %d bytes", label, (int)SCENE_NAME_MAX);
-    if (*text)
+    if (*text && row->names)
         TRY(check_name(text, why));
+    for (const char *c = text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            return wrong(row, false, why, "%s: the text has a control character", label);
     strcpy(word, text);
     return STATUS_OK;
 }

@@ -277,7 +277,7 @@ static status get_data(pack_reader *from, data_entry *d, diagnostic *why)
     texture_record record;
     TRY(pack_get(from, &record, sizeof record, why));
     if (record.data != DATA_NONE && record.data != DATA_FOLLOWS)
-        return pack_damaged(why, "the number of optical data");
+        return pack_damaged(why, "where optical data are");
     d->path_line = record.line;
     d->path_column = record.column;
     return record.data == DATA_FOLLOWS ? optical_data_unpack(from, &d->data, why) : STATUS_OK;

@@ -10,6 +10,7 @@ const KINDS = [
   ['material', 'Materials'],
   ['mesh', 'Meshes'],
   ['texture', 'Textures'],
+  ['data', 'Optical data'],
 ];
 
 export function hintOf(object) {
