@@ -261,6 +261,31 @@ static void meshes_and_textures_are_copied_and_removed(void **state)
     assert_string_equal(hash, next);
 }
 
+/* A table, and a glass of a catalogue, which must be named. */
+static void optical_data_are_added_from_files(void **state)
+{
+    const room *r = *state;
+    char hash[64], next[64];
+    put(r, "lab/paint.csv", "nm,R\n400,0.2\n700,0.6\n");
+    put(r, "lab/two.agf",
+        "NM A 2 0 1.5 60 0 1\nCD 1 0.01 0.2 0.02 1 100 0 0 0 0\nLD 0.4 0.7\n"
+        "NM B 2 0 1.6 60 0 1\nCD 1.1 0.01 0.2 0.02 1 100 0 0 0 0\nLD 0.4 0.7\n");
+    film(r, hash);
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"data\", \"file\": \"paint.csv\", \"name\": \"paint\"}");
+    film(r, next);
+    assert_string_equal(hash, next);
+    assert_true(has_object(r, "paint"));
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"ball.color_data\": \"paint\"}}");
+    film(r, next);
+    assert_string_not_equal(hash, next);
+    expect(r, 409, "DELETE", "/api/objects/paint", "{}");
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"data\", \"file\": \"two.agf\"}");
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"data\", \"file\": \"two.agf\", \"set\": {\"glass\": \"C\"}}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"data\", \"file\": \"two.agf\", \"set\": {\"glass\": \"B\"}}");
+    assert_true(has_object(r, "two"));
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"data\", \"file\": \"../outside.csv\"}");
+}
+
 static void groups_of_objects_are_moved_scaled_and_turned(void **state)
 {
     const room *r = *state;
@@ -411,6 +436,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(objects_are_moved_turned_scaled_renamed_and_copied, enter, leave),
         cmocka_unit_test_setup_teardown(groups_of_objects_are_moved_scaled_and_turned, enter, leave),
         cmocka_unit_test_setup_teardown(copies_of_a_rod_are_visible_and_disjoint, enter, leave),
+        cmocka_unit_test_setup_teardown(optical_data_are_added_from_files, enter, leave),
         cmocka_unit_test_setup_teardown(meshes_and_textures_are_copied_and_removed, enter, leave),
         cmocka_unit_test_setup_teardown(invalid_object_changes_are_refused, enter, leave),
         cmocka_unit_test_setup_teardown(the_number_of_objects_is_limited, enter, leave),

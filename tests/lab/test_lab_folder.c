@@ -243,6 +243,7 @@ static status check_naming(const room *r, const char *row, const char *path)
     s->path = text_format("%s/sub/scene.yaml", r->inside);
     assert_int_equal(scene_add(s, PARAM_MESH, "body", NULL, NULL), STATUS_OK);
     assert_int_equal(scene_add(s, PARAM_TEXTURE, "cloth", NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_add(s, PARAM_DATA, "dye", NULL, NULL), STATUS_OK);
     assert_int_equal(scene_set(s, row, path, NULL), STATUS_OK);
     const status code = folder_check_scene(r->f, s, &why);
     assert_true((code == STATUS_OK) == !why.what[0]);
@@ -253,7 +254,7 @@ static status check_naming(const room *r, const char *row, const char *path)
 static void files_that_a_scene_refers_to_must_be_inside(void **state)
 {
     const room *r = *state;
-    static const char *const rows[] = {"background.image", "body.file", "body.script", "cloth.file"};
+    static const char *const rows[] = {"background.image", "body.file", "body.script", "cloth.file", "dye.file"};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_int_equal(check_naming(r, rows[i], "pull.yaml"), STATUS_OK);
         assert_int_equal(check_naming(r, rows[i], "../a scene.yaml"), STATUS_OK);
@@ -288,7 +289,10 @@ static void visible_files_inside_are_listed_by_use(void **state)
     put(r->inside, "p.jpeg", "");
     put(r->inside, "q.study", "");
     put(r->inside, "bad\xff.png", "");
-    put(r->inside, "notes.txt", "");
+    put(r->inside, "notes.md", "");
+    put(r->inside, "led.csv", "");
+    put(r->inside, "SCHOTT.AGF", "");
+    put(r->inside, "bk7.yml", "DATA: [{type: formula 1}]\n");
     link_to(r->inside, "passwd.png", "/etc/passwd");
     json_t *all = NULL;
     assert_int_equal(folder_json(r->f, &all, NULL), STATUS_OK);
@@ -298,6 +302,8 @@ static void visible_files_inside_are_listed_by_use(void **state)
     assert_true(lists(all, "scenes", "in.yaml") && lists(all, "scripts", "sub/pull.yaml") &&
                 lists(all, "models", "sub/two/three/deep.OBJ"));
     assert_true(lists(all, "images", "p.jpeg") && lists(all, "studies", "q.study"));
+    assert_true(lists(all, "data", "led.csv") && lists(all, "data", "SCHOTT.AGF") && lists(all, "data", "bk7.yml"));
+    assert_int_equal(json_array_size(json_object_get(all, "data")), 3);
     assert_int_equal(json_array_size(json_object_get(all, "scenes")), 4);
     assert_int_equal(json_array_size(json_object_get(all, "scripts")), 1);
     assert_int_equal(json_array_size(json_object_get(all, "models")), 1);

@@ -108,7 +108,7 @@ static status read_medium_map(const scene_reader *r, const char *owner, const pa
     if (!file || file->kind != NODE_SCALAR || !file->text[0])
         return node_error(r->file, map, r->why, "write {file: NAME}, or the name of a medium (cuvette media)",
                           "%.80s.medium is a map without a file", owner);
-    TRY(read_located(r, file, new_data(r->scene, file->text, name, r->why)));
+    TRY(read_located(r, file, new_data(r->scene, file->text, NULL, name, r->why)));
     const size_t index = r->scene->data_count - 1;
     TRY(read_entries(r, name, PARAM_DATA, index, map));
     store_locations(r, PARAM_DATA, index, map);

@@ -21,7 +21,7 @@ typedef struct edit {
     const char *requested_name; /* name of a new object; NULL: any */
     const char *file;           /* file of a new object, relative to the folder */
     const folder *files;
-    const scene *loaded; /* scene loaded from a model or texture file */
+    const scene *loaded; /* scene loaded from the file of a new object */
     shape_kind shape;
     const json_t *values; /* parameters of a new object; NULL: none */
     object_list group;    /* the object and those edited with it; first NULL: only the object */
@@ -47,7 +47,7 @@ static status change(void *context, scene *s, diagnostic *why)
     }
     const bool is_one = !e->name || at.object_group >= PARAM_MESH || (e->or_camera && at.object_group == PARAM_CAMERA);
     return is_one ? e->act(e, s, why)
-                  : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh or a texture",
+                  : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh, a texture or data",
                              "the %.60s cannot be edited in this way", e->name);
 }
 
@@ -222,14 +222,14 @@ status api_contents(call *c)
 /* --- new objects --- */
 
 /* Sets parameters and the material of the new object, by name. */
-static status set_values(const edit *e, scene *s, diagnostic *why)
+static status set_values(const json_t *values, const char *name, scene *s, diagnostic *why)
 {
     const char *row;
     json_t *value;
     status code = STATUS_OK;
-    json_object_foreach((json_t *)(uintptr_t)e->values, row, value)
+    json_object_foreach((json_t *)(uintptr_t)values, row, value)
     {
-        char *text = NULL, *path = text_format("%s.%s", e->new_name, row);
+        char *text = NULL, *path = text_format("%s.%s", name, row);
         THEN(code, api_value_text(value, row, &text, why));
         THEN(code, path ? scene_set_property(s, path, text, why) : out_of_memory(why));
         free(text);
@@ -238,13 +238,14 @@ static status set_values(const edit *e, scene *s, diagnostic *why)
     return code;
 }
 
-/* Adds a texture, or the loaded model. */
+/* Adds a texture, data, or the loaded model. */
 static status add_file(edit *e, scene *s, diagnostic *why)
 {
     char *path;
     status code = folder_path_from(e->files, e->file, s->path, &path, why);
-    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->requested_name, e->new_name, why)
-                                             : new_texture(s, path, e->requested_name, e->new_name, why));
+    THEN(code, strcmp(e->word, "model") == 0  ? new_model(s, e->loaded, path, e->requested_name, e->new_name, why)
+               : strcmp(e->word, "data") == 0 ? new_data(s, path, e->requested_name, e->new_name, why)
+                                              : new_texture(s, path, e->requested_name, e->new_name, why));
     free(path);
     return code;
 }
@@ -256,7 +257,8 @@ static status add_of_kind(edit *e, scene *s, diagnostic *why)
         status (*add)(scene *s, const char *requested_name, object_name new_name,
                       diagnostic *why); /* NULL: from a file */
     } kinds[] = {{"light", new_light}, {"beam", new_beam}, {"material", new_material},
-                 {"slime", new_slime}, {"texture", NULL},  {"model", NULL}};
+                 {"slime", new_slime}, {"texture", NULL},  {"model", NULL},
+                 {"data", NULL}};
     if (e->requested_name && check_name_is_free(s, e->requested_name, why) != STATUS_OK) {
         e->refused = 409;
         return STATUS_BAD_INPUT;
@@ -266,31 +268,44 @@ static status add_of_kind(edit *e, scene *s, diagnostic *why)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
             return kinds[i].add ? kinds[i].add(s, e->requested_name, e->new_name, why) : add_file(e, s, why);
-    return diagnose(why, STATUS_BAD_INPUT, "use solid, light, beam, material, model, slime or texture",
+    return diagnose(why, STATUS_BAD_INPUT, "use solid, light, beam, material, model, slime, texture or data",
                     "unknown kind '%.60s'", e->word);
 }
 
 static status add_object(edit *e, scene *s, diagnostic *why)
 {
     const status code = add_of_kind(e, s, why);
-    return code == STATUS_OK && e->values ? set_values(e, s, why) : code;
+    return code == STATUS_OK && e->values ? set_values(e->values, e->new_name, s, why) : code;
 }
 
-/* Loads the model or texture into a scene of its own, without holding the lock of the scene document. */
-static status load_file(lab *l, const char *file, bool is_model, scene **out, diagnostic *why)
+/* The kind of object that a file makes; PARAM_GROUP_COUNT: the word names none. */
+static param_group group_of_file(const char *word)
 {
-    char *path = NULL;
-    status code = folder_path(l->files, file, true, &path, why);
+    return strcmp(word, "model") == 0     ? PARAM_MESH
+           : strcmp(word, "texture") == 0 ? PARAM_TEXTURE
+           : strcmp(word, "data") == 0    ? PARAM_DATA
+                                          : PARAM_GROUP_COUNT;
+}
+
+/* Loads the file of a new object into a scene of its own, without holding the lock of the scene document. The glass of
+ * a catalogue is among the values of the object. */
+static status load_file(lab *l, const edit *e, param_group group, scene **out, diagnostic *why)
+{
+    /* the words of kinds are reserved */
+    const char *name = group == PARAM_MESH ? "model" : group == PARAM_TEXTURE ? "image" : "table";
+    char *path = NULL, *row = text_format("%s.file", name);
+    status code = row ? folder_path(l->files, e->file, true, &path, why) : out_of_memory(why);
     scene *s = code == STATUS_OK ? scene_create() : NULL;
     if (code == STATUS_OK && !s)
         code = out_of_memory(why);
-    if (code == STATUS_OK)
-        code =
-            is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "image", NULL, why);
-    THEN(code, scene_set(s, is_model ? "model.file" : "image.file", path, why));
+    THEN(code, scene_add(s, group, name, NULL, why));
+    THEN(code, scene_set(s, row, path, why));
+    if (code == STATUS_OK && group == PARAM_DATA && e->values)
+        code = set_values(e->values, name, s, why);
     THEN(code, scene_document_limit(s, l->files, why));
     THEN(code, scene_load(s, why));
     free(path);
+    free(row);
     if (code == STATUS_OK)
         *out = s;
     else
@@ -303,8 +318,8 @@ static status read_new(call *c, edit *e, scene **loaded)
     const char *shape = NULL;
     if (!api_read_text(c, "kind", true, &e->word) || !api_read_text(c, "name", false, &e->requested_name))
         return STATUS_BAD_INPUT;
-    const bool is_model = strcmp(e->word, "model") == 0, is_file = is_model || strcmp(e->word, "texture") == 0,
-               is_solid = strcmp(e->word, "solid") == 0;
+    const param_group group = group_of_file(e->word);
+    const bool is_file = group != PARAM_GROUP_COUNT, is_solid = strcmp(e->word, "solid") == 0;
     if (!api_read_text(c, "shape", is_solid, &shape) || !api_read_text(c, "file", is_file, &e->file))
         return STATUS_BAD_INPUT;
     e->values = json_object_get(c->body, "set");
@@ -312,7 +327,7 @@ static status read_new(call *c, edit *e, scene **loaded)
         return api_refuse(c, 400, "'set' is not an object", "give {PARAMETER: VALUE} of the new object");
     status code = is_solid ? scene_shape_named(shape, &e->shape, &c->why) : STATUS_OK;
     if (is_file && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
-        code = load_file(c->l, e->file, is_model, loaded, &c->why);
+        code = load_file(c->l, e, group, loaded, &c->why);
         semaphore_release(c->l->heavy);
     }
     return code;

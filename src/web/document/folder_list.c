@@ -1,5 +1,5 @@
-/* Lists the files of the folder that the laboratory can open: classified by extension; scenes and hand scripts, both
- * YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
+/* Lists the files of the folder that the laboratory can open: classified by extension; scenes, hand scripts and optical
+ * data, all YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
  * reached. */
 #include "base/array.h"
 #include "base/json_build.h"
@@ -17,16 +17,26 @@
 
 enum { DEPTH_MAX = 3, ENTRIES_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
 
-typedef enum file_use { USE_SCENE, USE_MODEL, USE_IMAGE, USE_SCRIPT, USE_STUDY, USE_LESSON, USE_COUNT } file_use;
-static const char *const use_names[USE_COUNT] = {"scenes", "models", "images", "scripts", "studies", "lessons"};
+typedef enum file_use {
+    USE_SCENE,
+    USE_MODEL,
+    USE_IMAGE,
+    USE_DATA,
+    USE_SCRIPT,
+    USE_STUDY,
+    USE_LESSON,
+    USE_COUNT
+} file_use;
+static const char *const use_names[USE_COUNT] = {"scenes", "models", "images", "data", "scripts", "studies", "lessons"};
 
 static const struct ending {
     const char *text;
     file_use use;
 } endings[] = {
-    {".yaml", USE_SCENE}, {".yml", USE_SCENE}, {".obj", USE_MODEL}, {".ply", USE_MODEL},   {".stl", USE_MODEL},
-    {".gltf", USE_MODEL}, {".glb", USE_MODEL}, {".xyz", USE_MODEL}, {".png", USE_IMAGE},   {".jpg", USE_IMAGE},
-    {".jpeg", USE_IMAGE}, {".pfm", USE_IMAGE}, {".bmp", USE_IMAGE}, {".study", USE_STUDY}, {".lesson", USE_LESSON},
+    {".yaml", USE_SCENE}, {".yml", USE_SCENE}, {".obj", USE_MODEL},   {".ply", USE_MODEL},     {".stl", USE_MODEL},
+    {".gltf", USE_MODEL}, {".glb", USE_MODEL}, {".xyz", USE_MODEL},   {".png", USE_IMAGE},     {".jpg", USE_IMAGE},
+    {".jpeg", USE_IMAGE}, {".pfm", USE_IMAGE}, {".bmp", USE_IMAGE},   {".agf", USE_DATA},      {".csv", USE_DATA},
+    {".tsv", USE_DATA},   {".txt", USE_DATA},  {".study", USE_STUDY}, {".lesson", USE_LESSON},
 };
 
 /* Names relative to the folder, owned. */
@@ -136,6 +146,8 @@ static file_use use_by_keys(listing *l, const char *name, const char *path)
     file_use use = USE_COUNT;
     if (root->kind == NODE_MAP && node_get(root, "hands"))
         use = USE_SCRIPT;
+    if (root->kind == NODE_MAP && node_get(root, "DATA"))
+        use = USE_DATA;
     for (size_t i = 0; root->kind == NODE_MAP && use == USE_COUNT && i < sizeof scene_keys / sizeof *scene_keys; i++)
         use = node_get(root, scene_keys[i]) ? USE_SCENE : USE_COUNT;
     document_destroy(file);

@@ -287,9 +287,9 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
     return new_of_file(s, PARAM_TEXTURE, path, wanted, name, why);
 }
 
-status new_data(scene *s, const char *path, object_name name, diagnostic *why)
+status new_data(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why)
 {
-    return new_of_file(s, PARAM_DATA, path, NULL, name, why);
+    return new_of_file(s, PARAM_DATA, path, wanted, name, why);
 }
 
 static void retain_loaded(mesh_entry *m, const mesh_entry *from)

@@ -19,9 +19,9 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
 status new_material(scene *s, const char *wanted, object_name name, diagnostic *why);
 /* A soft ball of clear green jelly. */
 status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why);
-/* path: as written in the scene. */
-/* Adds optical data with this file, and names them after it. */
-status new_data(scene *s, const char *path, object_name name, diagnostic *why);
+/* Textures and optical data of a file, after which they are named unless `wanted` is not NULL. path: as written in the
+ * scene. */
+status new_data(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why);
 status new_texture(scene *s, const char *path, const char *wanted, object_name name, diagnostic *why);
 /* Adds a mesh and a solid. loaded: a scene with only this mesh, already loaded; path: as written in the scene; name:
  * the solid's. */

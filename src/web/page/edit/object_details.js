@@ -62,6 +62,7 @@ const GROUPS = {
   light: 'Light',
   beam: 'Beam',
   texture: 'Texture',
+  data: 'Optical data',
 };
 const OWN = '(own material)';
 

@@ -92,6 +92,7 @@ function addButtons(lab) {
       small('Model …', () => files.addFile('model', 'Add a model'), 'cube'),
       small('Texture …', () => files.addFile('texture', 'Add a texture'), 'image'),
       small('Sky …', files.pickSky, 'image'),
+      small('Data …', () => files.addFile('data', 'Add optical data')),
     ),
   );
 }

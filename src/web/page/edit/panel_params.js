@@ -32,7 +32,7 @@ function grouped(rows) {
   return groups;
 }
 
-const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4 };
+const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4, data: 5 };
 
 function ordered(names, lab) {
   const place = (name) => (LAST.includes(name) ? 10 + LAST.indexOf(name) : (rank[lab.object(name)?.kind] ?? 5));

@@ -1,12 +1,13 @@
 /* Dialogs that open, save and choose files of the laboratory's folder.
- * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), addFile('model' or 'texture',
- * title), pick(title, kind, nothing, actions) -> promise of a name or null, forObject(object) -> node or null}
+ * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), addFile('model', 'texture' or
+ * 'data', title), pick(title, kind, nothing, actions) -> promise of a name or null, forObject(object) -> node or null}
  *   nothing: the text if the folder has no such files */
 
 import { thumbnail } from '../shared/images.js';
 import { saveReply } from '../shared/save_file.js';
 import { ask, button, dialog, element, empty, notice, replace, unique } from '../shared/ui.js';
 
+const NO_DATA = 'The folder contains no tables, glass catalogues or files of refractiveindex.info.';
 const MANY = 8; /* longer lists get a search field */
 
 export function createFiles(lab, choice) {
@@ -237,12 +238,42 @@ export function createFiles(lab, choice) {
   }
 
   async function addFile(kind, title) {
-    const file = await pick(
-      title,
-      kind === 'model' ? 'models' : 'images',
-      kind === 'model' ? 'The folder contains no models.' : 'The folder contains no images.',
+    const [use, nothing] = {
+      model: ['models', 'The folder contains no models.'],
+      texture: ['images', 'The folder contains no images.'],
+      data: ['data', NO_DATA],
+    }[kind];
+    const file = await pick(title, use, nothing);
+    if (!file) return;
+    if (!/\.agf$/i.test(file)) return choice.add({ kind, file });
+    const glass = await askGlass(file);
+    if (glass) await choice.add({ kind, file, set: { glass } });
+  }
+
+  /* A catalogue has many glasses, and no one of them is the usual one. */
+  async function askGlass(file) {
+    const input = element('input', { type: 'text', class: 'input', id: unique('glass'), spellcheck: 'false' });
+    const field = element(
+      'div',
+      { class: 'field wide' },
+      element('label', { for: input.id, text: `Glass of ${file.split('/').pop()}` }),
+      element('span', { class: 'field-control' }, input),
     );
-    if (file) await choice.add({ kind, file });
+    const made = dialog({
+      title: 'Choose a glass',
+      content: field,
+      actions: [
+        ['Cancel', null],
+        ['Add', () => input.value.trim(), 'primary'],
+      ],
+    });
+    input.addEventListener('keydown', (event) => {
+      if (event.key !== 'Enter') return;
+      event.preventDefault(); /* Enter would press the button that gets the focus back */
+      made.close(input.value.trim());
+    });
+    input.focus();
+    return made.closed;
   }
 
   /* Buttons for the files of an object. */
@@ -253,6 +284,11 @@ export function createFiles(lab, choice) {
       parts.push([
         'Choose an image …',
         () => setFile(`${object.name}.file`, 'Image', 'images', 'The folder contains no images.'),
+      ]);
+    if (object.kind === 'data')
+      parts.push([
+        'Choose a data file …',
+        () => setFile(`${object.name}.file`, 'Optical data', 'data', NO_DATA),
       ]);
     if (object.kind === 'mesh' && of('file'))
       parts.push([
