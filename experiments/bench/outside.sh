@@ -11,6 +11,13 @@ spent() { # spent CONTESTANT TRACED COMMAND...: notes the CPU seconds of a comma
     read -r user system < <({ time "${@:3}" >"$work/out" 2>"$work/err"; } 2>&1)
     note "$1" "$(awk -v u="$user" -v s="$system" 'BEGIN { print u + s }')" "$2"
 }
+picture() { # picture CONTESTANT SCENE [SET...]: a PNG alone; the JSON would list all parameters of all solids
+    local sets=(--set render.threads=1)
+    for one in "${@:3}"; do sets+=(--set "$one"); done
+    spent "$1" 0 "$ours" render "$2" -o "$work/image.png" "${sets[@]}"
+    [ -s "$work/image.png" ] || failed "$1" "$work/err"
+    rm -f "$work/image.png"
+}
 image() { # image CONTESTANT SCENE FILE [SET...]
     local sets=(--set render.threads=1)
     for one in "${@:4}"; do sets+=(--set "$one"); done
@@ -36,7 +43,7 @@ prepare() {
 round() {
     local n kind
     for n in $solids; do
-        image "solids $n" "$(spheres 1 "$n" 1)" image.png render.depth=0 render.width=160 render.height=120
+        picture "solids $n" "$(spheres 1 "$n" 1)" render.depth=0 render.width=160 render.height=120
     done
     image small "$rod" image.png render.width=16 render.height=16
     image rod "$rod" image.png render.width=400 render.height=300
