@@ -51,7 +51,7 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_sink *t
                         owner->name);
     } else if (!scene_has_constant_weights(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !material_is_layered(m, &s->render) &&
-               m->sheet == SHEET_NONE && m->extraordinary_ior == 0.0 && material_scattering(m, &s->render) == 0.0 &&
+               m->sheet == SHEET_NONE && m->extraordinary_ior == 0.0 && !material_scatters(m, &s->render) &&
                !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_report(taker, owner->name, "ior", "set its ior",
                     "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
@@ -185,14 +185,14 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_sink *ta
     if (m->transparency == 0.0 && material_absorbs(m) && solid_is_opaque(s, owner))
         note_report(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
                     "set its transparency", "%s absorbs but is opaque", owner->name);
-    if (m->scatter_per_m > 0.0 && solid_is_opaque(s, owner))
-        note_report(taker, owner->name, "scatter_per_m", "set its transparency", "%s scatters light but is opaque",
-                    owner->name);
-    else if (m->scatter_per_m > 0.0 && !integrator_traits_of(&s->render)->by_chance)
-        note_report(taker, owner->name, "scatter_per_m", "set render.integrator to path",
+    const char *row = m->scatter_data[0] ? "scatter_data" : "scatter_per_m";
+    if (material_is_turbid(m) && solid_is_opaque(s, owner))
+        note_report(taker, owner->name, row, "set its transparency", "%s scatters light but is opaque", owner->name);
+    else if (material_is_turbid(m) && !integrator_traits_of(&s->render)->by_chance)
+        note_report(taker, owner->name, row, "set render.integrator to path",
                     "%s is treated as clear: only the path integrator shows scattering", owner->name);
-    else if (material_scattering(m, &s->render) > 0.0 && s->render.polarisation)
-        note_report(taker, owner->name, "scatter_per_m", "",
+    else if (material_scatters(m, &s->render) && s->render.polarisation)
+        note_report(taker, owner->name, row, "",
                     "the light that %s scatters is unpolarised: its phase function does not polarise", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_DATA))
         note_report(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
@@ -209,7 +209,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_sink *ta
 static void hint_at_vain(const scene *s, const solid *owner, const note_sink *taker)
 {
     const material *m = &owner->surface;
-    if (m->asymmetry != 0.0 && m->scatter_per_m == 0.0)
+    if (m->asymmetry != 0.0 && !material_is_turbid(m))
         note_report(taker, owner->name, "asymmetry", "set its scatter_per_m",
                     "%s does not scatter light: its asymmetry has no effect", owner->name);
     if (m->sheet != SHEET_RETARDER && (m->retardance_deg != 0.0 || m->birefringence != 0.0))
@@ -237,7 +237,7 @@ static void hint_at_lights(const scene *s, const note_sink *taker)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         clear |= one->visible && one->surface.transparency > 0.0;
-        scatters |= one->visible && material_scattering(&one->surface, &s->render) > 0.0;
+        scatters |= one->visible && material_scatters(&one->surface, &s->render);
     }
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];

@@ -32,6 +32,7 @@ static bool is_of_region(const inert_case *c)
                                            "absorb_spectrum",
                                            "absorb_data",
                                            "scatter_per_m",
+                                           "scatter_data",
                                            "asymmetry",
                                            "tint_distance",
                                            "extinction",

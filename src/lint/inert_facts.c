@@ -215,7 +215,7 @@ bool is_lit_by_lamps(const scene *s, const material *m)
     return !is_unlit(s) &&
            (shows_specular(s, m) || (beams_light(s) && m->diffuse > 0.0 && has_color(m)) ||
             (shining_lights(s) > 0 && ((m->diffuse > 0.0 && has_color(m)) || material_roughness(m, &s->render) > 0.0 ||
-                                       material_scattering(m, &s->render) > 0.0)));
+                                       material_scatters(m, &s->render))));
 }
 
 bool shows_color(const scene *s, const material *m)

@@ -95,15 +95,26 @@ bool no_color(const inert_case *c)
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
-/* A transparent solid also has a tint. */
 /* Measured values replace the parameter. */
 bool by_data(const inert_case *c)
 {
-    const bool color = is_named(c, "color"), replaced = color ? c->m->color_data[0] : c->m->absorb_data[0];
-    return replaced && inert_say(c, "by-data", inert_set("%s.%s=", c->name, color ? "color_data" : "absorb_data").text,
-                                 "its %s replace it", color ? "color_data" : "absorb_data");
+    const char *by = is_named(c, "color")           ? "color_data"
+                     : is_named(c, "scatter_per_m") ? "scatter_data"
+                                                    : "absorb_data";
+    const material *m = c->m;
+    const bool replaced = is_named(c, "color")           ? m->color_data[0]
+                          : is_named(c, "scatter_per_m") ? m->scatter_data[0]
+                                                         : m->absorb_data[0];
+    return replaced && inert_say(c, "by-data", inert_set("%s.%s=", c->name, by).text, "its %s replace it", by);
 }
 
+bool not_turbid(const inert_case *c)
+{
+    return !material_is_turbid(c->m) &&
+           inert_say(c, "clear", inert_set("%s.scatter_per_m=2", c->name).text, "its medium does not scatter light");
+}
+
+/* A transparent solid also has a tint. */
 bool no_color_or_tint(const inert_case *c)
 {
     const bool tints = !material_is_opaque(c->m) && !is_unlit(c->s);

@@ -211,7 +211,7 @@ bool no_dispersion(const inert_case *c)
 static bool absorbs(const scene *s, const solid *one)
 {
     return !material_is_opaque(&one->surface) &&
-           (material_absorbs(&one->surface) || material_scattering(&one->surface, &s->render) > 0.0);
+           (material_absorbs(&one->surface) || material_scatters(&one->surface, &s->render));
 }
 
 bool no_absorption(const inert_case *c)

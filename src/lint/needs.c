@@ -39,7 +39,7 @@ static const needs_row light_rows[] = {
     NEEDS_LIGHT(MATERIAL,
                 "ambient diffuse specular shininess absorb_per_m absorb_spectrum absorb_data tint_distance extinction "
                 "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
-                "birefringence roughness scatter_per_m asymmetry"),
+                "birefringence roughness scatter_per_m scatter_data asymmetry"),
 };
 
 static const needs_row rows[] = {
@@ -178,12 +178,13 @@ static const needs_row rows[] = {
     FACT(MATERIAL, "extinction", nothing_reflected),
     FACT(MATERIAL,
          "extraordinary_ior optic_axis sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence "
-         "absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance",
+         "absorb_per_m absorb_spectrum absorb_data scatter_per_m scatter_data asymmetry tint_distance",
          opaque_rule),
     NEEDS_SET(MATERIAL, "film_ior", "film_thickness_nm>0", "%.film_thickness_nm=300"),
     FACT(MATERIAL,
          "extraordinary_ior optic_axis film_thickness_nm film_ior sheet sheet_axis sheet_pass sheet_block "
-         "retardance_deg birefringence absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance",
+         "retardance_deg birefringence absorb_per_m absorb_spectrum absorb_data scatter_per_m scatter_data asymmetry "
+         "tint_distance",
          mirror_rule),
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.integrator=whitted"),
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.lighting=whitted"),
@@ -200,12 +201,13 @@ static const needs_row rows[] = {
     NEEDS(MATERIAL, "retardance_deg birefringence", "sheet=retarder"),
     FACT(MATERIAL, "sheet_axis retardance_deg birefringence", unpolarised),
     FACT(MATERIAL, "sheet_axis", axis_unseen),
-    NEEDS_PATHS(MATERIAL, "roughness scatter_per_m asymmetry"),
+    NEEDS_PATHS(MATERIAL, "roughness scatter_per_m scatter_data asymmetry"),
     FACT(MATERIAL, "roughness", nothing_rough),
-    FACT(MATERIAL, "absorb_per_m absorb_spectrum absorb_data scatter_per_m asymmetry tint_distance", unpassed),
+    FACT(MATERIAL, "absorb_per_m absorb_spectrum absorb_data scatter_per_m scatter_data asymmetry tint_distance",
+         unpassed),
     NEEDS(MATERIAL, "absorb_per_m", "absorb_spectrum=[]"),
-    FACT(MATERIAL, "absorb_per_m absorb_spectrum", by_data),
-    NEEDS_SET(MATERIAL, "asymmetry", "scatter_per_m>0", "%.scatter_per_m=2"),
+    FACT(MATERIAL, "absorb_per_m absorb_spectrum scatter_per_m", by_data),
+    FACT(MATERIAL, "asymmetry", not_turbid),
     NEEDS_SET(MATERIAL, "tint_distance", "color!=1,1,1", "%.color=0.9,0.7,0.5"),
     FACT(MATERIAL, "texture texture_size", no_texture),
     FACT(MATERIAL, "alpha alpha_cutoff", no_alpha),

@@ -555,6 +555,7 @@ static void wrong_media_of_files_are_refused(void **state)
         {"lights: {l: {spectrum: data, spectrum_data: gone}}\n", "there is no data 'gone'"},
         {"solids: {a: {shape: sphere, color_data: gone}}\n", "there is no data 'gone'"},
         {"solids: {a: {shape: sphere, absorb_data: gone}}\n", "there is no data 'gone'"},
+        {"solids: {a: {shape: sphere, scatter_data: gone}}\n", "there is no data 'gone'"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         scene *s;

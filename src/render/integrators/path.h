@@ -78,6 +78,6 @@ enum { PATH_SCATTERED = -2 - SCENE_LIGHTS_MAX };
 
 /* After the search for the nearest interfaces and lamps of a batch: samples lamps along its rays, and marks those that
  * scatter. */
-void path_scatter_mark(tracer *t, const ray_queue *q, int first, int count);
+void path_scatter_mark(tracer *t, ray_queue *q, int first, int count);
 /* Scatters rays list[0 .. count - 1] of the batch, which are marked. */
 void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int count);

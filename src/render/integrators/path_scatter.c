@@ -80,22 +80,26 @@ static void light_along(tracer *t, int number, const ray_queue *q, int first, in
         const region_scatter *here = &p->scatter->region[l->region[i]];
         s.lamp[k] = p->scatter->lamps[number], s.weight[k] = 1.0;
         const lamp_aim a = path_lamp_aim(t, &s, k);
-        const double flights = here->per_unit * absorption_left(l->depth[3][i]),
+        double density[3];
+        const double flights = airlight_flights(t, l, i, density),
                      phase = henyey_greenstein(vec3_dot(direction_of(g, k), a.to), here->asymmetry);
         g->wr[k] *= absorption_left(l->depth[0][i]) * l->sheet_transmittance[i];
         g->wg[k] *= absorption_left(l->depth[1][i]) * l->sheet_transmittance[i];
         g->wb[k] *= absorption_left(l->depth[2][i]) * l->sheet_transmittance[i];
-        if (a.light > 0.0)
-            enqueue(t, k, s.lamp[k], vec3_scale(a.to, a.distance),
-                    a.light * phase * flights / (l->density[i] + flights));
+        const double sum = l->density[i] + flights;
+        if (a.light > 0.0 && flights > 0.0)
+            path_enqueue_lamp(t, k, s.lamp[k], vec3_scale(a.to, a.distance), g->n_from[k], g->inside_before[k],
+                              vec3_make(a.light * phase * density[0] / sum, a.light * phase * density[1] / sum,
+                                        a.light * phase * density[2] / sum));
     }
 }
 
-void path_scatter_mark(tracer *t, const ray_queue *q, int first, int count)
+void path_scatter_mark(tracer *t, ray_queue *q, int first, int count)
 {
     const flight_work *w = &t->media->flights;
     for (int number = 0; number < t->target.frame_plan->scatter->lamp_count; number++)
         light_along(t, number, q, first, count);
+    scattering_weigh(t, q, first, count);
     for (int i = 0; i < count; i++)
         if (w->end[i] < (double)INFINITY)
             t->batch.hits.hit_primitive[i] = PATH_SCATTERED;
@@ -189,7 +193,7 @@ void path_scatter(tracer *t, const ray_queue *q, int first, const int *list, int
     for (int k = 0; k < count; k++) {
         const region_scatter *here = &p->scatter->region[w->region[list[k]]];
         media_at_points.asymmetry[k] = here->asymmetry;
-        media_at_points.flights[k] = here->per_unit * w->u[list[k]];
+        media_at_points.flights[k] = w->density[list[k]];
     }
     sample_lamps(t, depth, &media_at_points);
     t->sampling->draw(&p->draws, count, g->sample_key, depth, DRAW_PHASE, u, v);

@@ -147,7 +147,7 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                             .shadow_transmittance = shadow_transmittance,
                             .face_shadow_transmittance = p->shadow_transmittance[i],
                             .attenuates = material_attenuates(&one->surface) ||
-                                          material_scattering(&one->surface, &s->render) > 0.0 ||
+                                          material_scatters(&one->surface, &s->render) ||
                                           sheet_acts(&one->surface, &s->render),
                             .reflects = p->basic && !scene_has_constant_weights(&s->render),
                             .partial = solid_is_partial(s, one),

@@ -33,7 +33,7 @@ typedef struct region_sheet {
 } region_sheet;
 
 typedef struct region_scatter {
-    double per_unit;  /* scattering coefficient, 1 / scene unit */
+    vec3 per_unit;    /* scattering coefficient by channel, 1 / scene unit; not for spectral films */
     double asymmetry; /* of the phase function, optics/phase_function.h */
 } region_scatter;
 
@@ -45,6 +45,7 @@ enum { AIRLIGHTS_MAX = 8 };
 enum { SCATTER_BOXES_MAX = 8 };
 
 typedef struct scatter_plan {
+    bool by_channel; /* the channels of some medium differ */
     int box_count, lamp_count, lamps[AIRLIGHTS_MAX];
     bounds3 boxes[SCATTER_BOXES_MAX];
     region_scatter region[]; /* by priority index */

@@ -203,7 +203,7 @@ static int media_that_scatter(const scene *s, const scene_geometry *geometry)
     int count = 0;
     for (int r = 1; r <= geometry->region_count; r++)
         count += is_clear(&geometry->regions[r]) &&
-                 material_scattering(&s->solids[geometry->regions[r].solid].surface, &s->render) > 0.0;
+                 material_scatters(&s->solids[geometry->regions[r].solid].surface, &s->render);
     return count;
 }
 
@@ -219,10 +219,11 @@ bool scatter_plan_create(const scene *s, const scene_geometry *geometry, scatter
         return false;
     for (int r = 1; r <= geometry->region_count; r++) {
         const material *m = &s->solids[geometry->regions[r].solid].surface;
-        const double per_m = is_clear(&geometry->regions[r]) ? material_scattering(m, &s->render) : 0.0;
-        if (per_m == 0.0)
+        if (!is_clear(&geometry->regions[r]) || !material_scatters(m, &s->render))
             continue;
-        scatter->region[r] = (region_scatter){.per_unit = per_m * s->render.unit_m, .asymmetry = m->asymmetry};
+        const vec3 c = vec3_scale(material_scattering(m), s->render.unit_m);
+        scatter->region[r] = (region_scatter){.per_unit = c, .asymmetry = m->asymmetry};
+        scatter->by_channel |= s->render.spectrum != SPECTRUM_SPECTRAL && (c.x != c.y || c.x != c.z);
         const solid_shape shape = scene_geometry_shape(geometry, r);
         add_box(scatter, shape_world_box(&shape), count > SCATTER_BOXES_MAX);
     }

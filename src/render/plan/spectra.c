@@ -218,6 +218,7 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
                               : upsampled_reflectance(&l->color[priority_index], lambda_nm);
     b.checker_color = upsampled_reflectance(&l->checker_color[priority_index], lambda_nm);
     b.absorption = material_absorption_at(l->materials[priority_index], lambda_nm) * l->s->render.unit_m;
+    b.scattering = material_scattering_at(m, lambda_nm) * l->s->render.unit_m;
     if (material_tints(l->materials[priority_index]))
         b.absorption += material_tint(l->materials[priority_index], b.color);
     return b;

@@ -65,9 +65,9 @@ typedef struct spectral_row {
     double basis[SKY_BASIS_COUNT]; /* of a sky image's texels: white, cyan, magenta, yellow, red, green, blue */
 } spectral_row;
 
-/* A region at one wavelength; absorption: including tint, in 1 / scene unit. */
+/* A region at one wavelength; absorption, which includes the tint, and scattering in 1 / scene unit. */
 typedef struct region_spectrum {
-    double color, checker_color, index, absorption;
+    double color, checker_color, index, absorption, scattering;
 } region_spectrum;
 
 typedef struct spectra {

@@ -14,6 +14,15 @@ static vec3 absorption_coefficients(const plan *p, int priority_index, int64_t s
     return vec3_make(a, a, a);
 }
 
+/* Scattering coefficients, likewise. */
+static vec3 scattering_coefficients(const plan *p, int priority_index, int64_t sample_key)
+{
+    if (!p->spectral)
+        return p->scatter->region[priority_index].per_unit;
+    const double s = spectra_region(p->spectral, sample_key, priority_index)->scattering;
+    return vec3_make(s, s, s);
+}
+
 /* --- airlight: points along rays, chosen for each lamp --- */
 
 /* An interval of distances along a ray. */
@@ -163,23 +172,24 @@ static void airlight_follow(tracer *t, const medium_segment *s)
     const plan *p = t->target.frame_plan;
     flight_work *w = &t->media->flights;
     const int i = s->ray;
-    const double scatters = p->scatter->region[s->priority_index].per_unit;
-    const vec3 a = absorption_coefficients(p, s->priority_index, t->media->sample_keys[i]);
-    const double coefficient[4] = {a.x, a.y, a.z, scatters};
+    const vec3 a = absorption_coefficients(p, s->priority_index, t->media->sample_keys[i]),
+               b = scattering_coefficients(p, s->priority_index, t->media->sample_keys[i]);
+    const double coefficient[MEDIA_DEPTHS] = {a.x, a.y, a.z, b.x, b.y, b.z};
+    const bool scatters = b.x > 0.0 || b.y > 0.0 || b.z > 0.0;
     for (int k = 0; k < p->scatter->lamp_count; k++) {
         airlight *l = &w->lamps[k];
         const double length = l->at[i] - w->passed[i];
-        if (!(scatters > 0.0 && length >= 0.0 && length < s->length))
+        if (!(scatters && length >= 0.0 && length < s->length))
             continue;
         l->region[i] = s->priority_index;
-        for (int c = 0; c < 4; c++)
+        for (int c = 0; c < MEDIA_DEPTHS; c++)
             l->depth[c][i] = w->depth[c][i] + coefficient[c] * length;
         if (p->sheets)
             l->sheet_transmittance[i] = sheets_fraction_within(t, &w->sheets, s, length);
     }
     if (p->sheets)
         sheets_segment(t, &w->sheets, s);
-    for (int c = 0; c < 4; c++)
+    for (int c = 0; c < MEDIA_DEPTHS; c++)
         w->depth[c][i] += coefficient[c] * s->length;
 }
 
@@ -189,14 +199,18 @@ void scattering_begin(tracer *t, const ray_queue *q, int first, int depth, int c
 {
     const double ln_2 = 0.69314718055994530942;
     flight_work *w = &t->media->flights;
-    double unused[ROW];
-    t->sampling->draw(&t->target.frame_plan->draws, count, q->sample_key + first, depth, DRAW_FLIGHT, w->u, unused);
+    const bool by_channel = t->target.frame_plan->scatter->by_channel;
+    double v[ROW];
+    t->sampling->draw(&t->target.frame_plan->draws, count, q->sample_key + first, depth, DRAW_FLIGHT, w->u, v);
     for (int i = 0; i < count; i++) {
         w->left[i] = -ln_2 * elementary_log2_inline(w->u[i]);
+        w->channel[i] = by_channel ? (int)fmin(3.0 * v[i], 2.0) : 0;
+        for (int c = 0; c < 3; c++)
+            w->weight[c][i] = 1.0;
         w->passed[i] = 0.0;
         w->end[i] = (double)INFINITY;
         w->region[i] = 0;
-        for (int c = 0; c < 4; c++)
+        for (int c = 0; c < MEDIA_DEPTHS; c++)
             w->depth[c][i] = 0.0;
     }
     if (t->target.frame_plan->sheets)
@@ -205,15 +219,51 @@ void scattering_begin(tracer *t, const ray_queue *q, int first, int depth, int c
     w->flies = w->flying = true;
 }
 
+/* Densities of flights that end behind an optical depth, by channel, where the medium has these coefficients; returns
+ * the mean. */
+static double flight_density(const double coefficient[3], const double depth[3], double by_channel[3])
+{
+    for (int c = 0; c < 3; c++)
+        by_channel[c] = coefficient[c] * absorption_left(depth[c]);
+    return (by_channel[0] + by_channel[1] + by_channel[2]) / 3.0;
+}
+
+double airlight_flights(const tracer *t, const airlight *l, int i, double by_channel[3])
+{
+    const plan *p = t->target.frame_plan;
+    const vec3 b = scattering_coefficients(p, l->region[i], t->media->sample_keys[i]);
+    const double coefficient[3] = {b.x, b.y, b.z}, depth[3] = {l->depth[3][i], l->depth[4][i], l->depth[5][i]};
+    const double mean = flight_density(coefficient, depth, by_channel);
+    return p->scatter->by_channel ? mean : by_channel[0];
+}
+
+/* Weights the channels of a ray by their densities of having passed `length` beyond the depths in w without scattering,
+ * and of then scattering if its coefficients b are not NULL. */
+static void weigh(flight_work *w, int i, const vec3 *b, double length)
+{
+    const double one[3] = {1.0, 1.0, 1.0}, own[3] = {b ? b->x : 0.0, b ? b->y : 0.0, b ? b->z : 0.0};
+    double depth[3], density[3];
+    for (int c = 0; c < 3; c++)
+        depth[c] = w->depth[3 + c][i] + own[c] * length;
+    w->density[i] = flight_density(b ? own : one, depth, density);
+    for (int c = 0; c < 3; c++)
+        w->weight[c][i] = density[c] / w->density[i];
+}
+
 /* Shortens a segment to the point at which the ray scatters, if it is within. */
-static void fly(flight_work *w, double per_unit, medium_segment *s)
+static void fly(const plan *p, flight_work *w, int64_t sample_key, medium_segment *s)
 {
     const int i = s->ray;
+    const vec3 b = scattering_coefficients(p, s->priority_index, sample_key);
+    const double per_unit = w->channel[i] == 0 ? b.x : w->channel[i] == 1 ? b.y : b.z;
     const double thickness = per_unit * s->length;
     if (thickness > w->left[i]) {
         s->length = w->left[i] / per_unit;
         w->end[i] = w->passed[i] + s->length;
         w->region[i] = s->priority_index;
+        w->density[i] = per_unit * w->u[i];
+        if (p->scatter->by_channel)
+            weigh(w, i, &b, s->length);
     }
     w->left[i] -= thickness;
 }
@@ -222,7 +272,7 @@ static void fly(flight_work *w, double per_unit, medium_segment *s)
  * scatters; called before absorption uses them. */
 static void follow_segments(tracer *t)
 {
-    const scatter_plan *scatter = t->target.frame_plan->scatter;
+    const plan *p = t->target.frame_plan;
     flight_work *w = &t->media->flights;
     medium_segments *list = &t->media->segments;
     int kept = 0;
@@ -230,11 +280,12 @@ static void follow_segments(tracer *t)
         medium_segment s = list->segment[k];
         const double passed = w->passed[s.ray], length = s.length;
         const bool has_ended = w->end[s.ray] < (double)INFINITY;
-        airlight_follow(t, &s);
+        const medium_segment whole = s;
         if (!has_ended) {
-            fly(w, scatter->region[s.priority_index].per_unit, &s);
+            fly(p, w, t->media->sample_keys[s.ray], &s);
             list->segment[kept++] = s;
         }
+        airlight_follow(t, &whole);
         w->passed[s.ray] = passed + length;
     }
     list->count = kept;
@@ -246,16 +297,29 @@ void scattering_end(tracer *t)
     t->media->flights.flying = false;
 }
 
+void scattering_weigh(tracer *t, ray_queue *q, int first, int count)
+{
+    flight_work *w = &t->media->flights;
+    for (int i = 0; t->target.frame_plan->scatter->by_channel && i < count; i++) {
+        if (!(w->end[i] < (double)INFINITY))
+            weigh(w, i, NULL, 0.0);
+        q->wr[first + i] *= w->weight[0][i];
+        q->wg[first + i] *= w->weight[1][i];
+        q->wb[first + i] *= w->weight[2][i];
+    }
+}
+
 /* --- absorption --- */
 
 /* Adds extinction by scattering, for rays without free flights. */
 static void add_scattering(tracer *t)
 {
-    const region_scatter *scatter = t->target.frame_plan->scatter->region;
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
-        for (int c = 0; c < 3; c++)
-            t->media->transmittance[c][s->ray] += scatter[s->priority_index].per_unit * s->length;
+        const vec3 b = scattering_coefficients(t->target.frame_plan, s->priority_index, t->media->sample_keys[s->ray]);
+        t->media->transmittance[0][s->ray] += b.x * s->length;
+        t->media->transmittance[1][s->ray] += b.y * s->length;
+        t->media->transmittance[2][s->ray] += b.z * s->length;
     }
 }
 

@@ -218,7 +218,7 @@ static status check_texture(const texture_entry *t, diagnostic *why)
 
 static status check_data(const data_entry *d, diagnostic *why)
 {
-    if (!d->path[0])
+    if (!d->path[0] && !d->data)
         return diagnose(why, STATUS_BAD_INPUT, "set a file, such as 'file: N-BK7.yml'", "%.80s: the data have no file",
                         d->name);
     return STATUS_OK;
@@ -273,8 +273,8 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
 #define FRACTION_MOST 1.05
 static status check_data_of(const scene *s, const material *m, const char *owner, diagnostic *why)
 {
-    const char *const names[] = {m->medium_data, m->color_data, m->absorb_data};
-    const optical_data *const values[] = {NULL, m->color_values, m->absorb_values}; /* those of curves */
+    const char *const names[] = {m->medium_data, m->color_data, m->absorb_data, m->scatter_data};
+    const optical_data *const values[] = {NULL, m->color_values, m->absorb_values, m->scatter_values}; /* of curves */
     double least, most = 0.0;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (names[i][0] && object_find(s, PARAM_DATA, names[i]) < 0)
@@ -401,9 +401,9 @@ static status check_alpha(const solid *owner, diagnostic *why)
 /* Photons do not scatter, so light that enters a scattering medium would be lost. */
 static status check_scattering(const scene *s, const solid *owner, diagnostic *why)
 {
-    if (!owner->visible || !scene_has_caustics(&s->render) || material_scattering(&owner->surface, &s->render) == 0.0)
+    if (!owner->visible || !scene_has_caustics(&s->render) || !material_scatters(&owner->surface, &s->render))
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "set render.caustics to off, or its scatter_per_m to 0",
+    return diagnose(why, STATUS_BAD_INPUT, "set render.caustics to off, or its scattering to none",
                     "%.80s: caustics by photons do not support its scattering medium", owner->name);
 }
 

@@ -53,10 +53,10 @@ typedef struct material {
     char medium_data[SCENE_NAME_MAX + 1]; /* data of the index, if medium is MEDIUM_DATA; "" for none */
     const optical_data *index_data;       /* that of medium_data, borrowed from the scene's entry; NULL until loaded */
     bool index_in_air;                    /* that index is relative to air */
-    char color_data[SCENE_NAME_MAX + 1],
-        absorb_data[SCENE_NAME_MAX + 1];              /* replace color and absorption; "" for none */
-    const optical_data *color_values, *absorb_values; /* as index_data */
-    vec3 absorb_per_m;                                /* absorption coefficient of the Beer-Lambert law, by channel */
+    char color_data[SCENE_NAME_MAX + 1], absorb_data[SCENE_NAME_MAX + 1],
+        scatter_data[SCENE_NAME_MAX + 1]; /* replace color, absorption and scatter_per_m; "" for none */
+    const optical_data *color_values, *absorb_values, *scatter_values; /* as index_data */
+    vec3 absorb_per_m; /* absorption coefficient of the Beer-Lambert law, by channel */
     number_list
         absorb_spectrum;  /* absorption by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
     double scatter_per_m; /* scattering coefficient of the medium, for random paths */

@@ -355,9 +355,29 @@ bool material_attenuates(const material *m)
     return material_absorbs(m) || material_tints(m);
 }
 
-double material_scattering(const material *m, const render_settings *r)
+double material_scattering_at(const material *m, double lambda_nm)
 {
-    return integrator_traits_of(r)->by_chance && !material_is_opaque(m) ? m->scatter_per_m : 0.0;
+    return m->scatter_values ? optical_data_coefficient(m->scatter_values, lambda_nm) : m->scatter_per_m;
+}
+
+vec3 material_scattering(const material *m)
+{
+    const double channel_nm[] = CHANNEL_LAMBDA_NM;
+    return vec3_make(material_scattering_at(m, channel_nm[0]), material_scattering_at(m, channel_nm[1]),
+                     material_scattering_at(m, channel_nm[2]));
+}
+
+bool material_is_turbid(const material *m)
+{
+    double least, most = m->scatter_per_m;
+    if (m->scatter_values)
+        optical_data_extremes(m->scatter_values, &least, &most);
+    return most > 0.0;
+}
+
+bool material_scatters(const material *m, const render_settings *r)
+{
+    return material_is_turbid(m) && integrator_traits_of(r)->by_chance && !material_is_opaque(m);
 }
 
 vec3 material_extinction(const material *m, double unit_m)

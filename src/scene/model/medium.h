@@ -92,8 +92,13 @@ bool material_tints(const material *m);
 double material_tint(const material *m, double value);
 /* Whether light is attenuated inside a transparent solid with this material. */
 bool material_attenuates(const material *m);
-/* Scattering coefficient in 1/m of a transparent solid's medium, for random paths; 0 for other integrators. */
-double material_scattering(const material *m, const render_settings *r);
+/* Scattering coefficients in 1/m: by channel, at CHANNEL_LAMBDA_NM, and at a wavelength. */
+vec3 material_scattering(const material *m);
+double material_scattering_at(const material *m, double lambda_nm);
+/* Whether some wavelength has a coefficient above 0; material_scatters: and the solid is transparent and rendered by
+ * random paths, without which media do not scatter. */
+bool material_is_turbid(const material *m);
+bool material_scatters(const material *m, const render_settings *r);
 /* Absorption plus tint by channel, in 1 / scene unit; not defined for opaque materials. */
 vec3 material_extinction(const material *m, double unit_m);
 /* The fraction of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights,

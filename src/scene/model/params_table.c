@@ -543,6 +543,9 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, scatter_per_m, "1/m", 0, 1e9, "0",
          "scattering coefficient of a transparent solid's medium (milk, fog), for integrator path: over a length d, "
          "exp(-scatter_per_m d) of the light is not scattered; 0: clear"),
+    {PARAM_MATERIAL, "scatter_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the scattering coefficient by wavelength, 1/m; replaces scatter_per_m", NULL,
+     OF(material, scatter_data), .names = "data"},
     REAL(PARAM_MATERIAL, material, asymmetry, "", -0.999, 0.999, "0",
          "mean cosine g of the scattering angle, by the phase function of Henyey and Greenstein; 0: evenly in all "
          "directions, near 1: almost straight on (milk: 0.9)"),

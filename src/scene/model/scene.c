@@ -196,6 +196,7 @@ static void follow_data(const scene *s, material *m)
     m->index_in_air = at >= 0 && s->data[at].relative_to == DATA_IN_AIR;
     m->color_values = data_named(s, m->color_data);
     m->absorb_values = data_named(s, m->absorb_data);
+    m->scatter_values = data_named(s, m->scatter_data);
 }
 
 void scene_follow_data(scene *s)

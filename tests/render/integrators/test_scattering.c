@@ -7,8 +7,10 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "optics/optical_data.h"
 #include "optics/phase_function.h"
 #include "path_fixture.h"
+#include "scene/model/medium.h"
 #include "whole.h"
 
 /* Media that scatter, on random paths, against closed forms: the phase function, free flights, single
@@ -60,6 +62,22 @@ static void cosines_are_drawn_by_the_phase_function(void **state)
         }
 }
 
+/* Gives a medium measured scattering, in 1/m, with these values at the wavelengths of the channels. */
+static void scatter_by_channel(material *m, double red, double green, double blue)
+{
+    const double point[] = {464.3, blue, 549.1, green, 611.4, red};
+    diagnostic why = {0};
+    optical_data_release(m->scatter_values);
+    worked(optical_data_create(NULL, (optical_curve){point, 3}, (optical_curve){NULL, 0}, &m->scatter_values, &why),
+           &why);
+}
+
+static double scattering_of(const material *m, int channel)
+{
+    const vec3 b = material_scattering(m);
+    return channel == 0 ? b.x : channel == 1 ? b.y : b.z;
+}
+
 /* --- what is not scattered --- */
 
 /* The camera looks along z; a slab of 2 units between z = 1 and 3, an emitter behind it. No second flight. */
@@ -89,6 +107,42 @@ static void what_passes_is_that_of_beer_and_lambert(void **state)
                 expect_estimate(look_by_chance(s, c),
                                 exp(-metres * (2.0 * absorbed[c] + 1.5 * scatters[i] + 0.5 * inner)));
             }
+    scene_destroy(s);
+}
+
+/* The channels fly by one of theirs, and are weighted. */
+static void channels_lose_their_own_share(void **state)
+{
+    (void)state;
+    static const double red[] = {0.05, 0.4, 0.0}, absorbed[] = {0.3, 0.1, 0.0};
+    scene *s = scene_from(slab_scene);
+    material *m = &s->solids[0].surface;
+    for (size_t i = 0; i < COUNT(red); i++) {
+        scatter_by_channel(m, red[i], 1.0, 2.5);
+        for (int c = 0; c < 3; c++)
+            expect_estimate(look_by_chance(s, c), exp(-2.0 * absorbed[c] - 1.5 * scattering_of(m, c) - 0.5 * 0.4));
+    }
+    optical_data_release(m->scatter_values);
+    scene_destroy(s);
+}
+
+/* Without a second flight and with nothing around, what scatters is lost as if it were absorbed. */
+static void a_wavelength_loses_its_own_share(void **state)
+{
+    (void)state;
+    scene *s = scene_from(slab_scene);
+    material *m = &s->solids[0].surface;
+    set_all(s, "render.spectrum=spectral core.visible=off slab.absorb_per_m=0,0,0 render.paths=8192");
+    scatter_by_channel(m, 0.1, 0.6, 2.0);
+    estimate scattered_away[3];
+    for (int c = 0; c < 3; c++)
+        scattered_away[c] = look_by_chance(s, c);
+    m->absorb_values = m->scatter_values;
+    m->scatter_values = NULL;
+    m->scatter_per_m = 0.0;
+    for (int c = 0; c < 3; c++)
+        expect_estimate(scattered_away[c], look_by_chance(s, c).value);
+    optical_data_release(m->absorb_values);
     scene_destroy(s);
 }
 
@@ -123,7 +177,7 @@ static const char cloud_scene[] =
 
 typedef struct lit_point {
     const scene *s;
-    double extinction;
+    double extinction, scatters;
     vec3 at;
 } lit_point;
 
@@ -131,7 +185,7 @@ typedef struct lit_point {
 static double scattered(const lit_point *p, vec3 to, double distance, double irradiance)
 {
     const material *m = &p->s->solids[0].surface;
-    return m->scatter_per_m * henyey_greenstein(to.z / vec3_length(to), m->asymmetry) * irradiance *
+    return p->scatters * henyey_greenstein(to.z / vec3_length(to), m->asymmetry) * irradiance *
            exp(-p->extinction * distance);
 }
 
@@ -200,7 +254,8 @@ static double airlight_of(const scene *s, int channel, double (*lit)(const lit_p
     const material *m = &s->solids[0].surface;
     const double absorbs[] = {m->absorb_per_m.x, m->absorb_per_m.y, m->absorb_per_m.z};
     double sum = 0.0;
-    lit_point p = {s, m->scatter_per_m + absorbs[channel], {0.0, 0.0, 0.0}};
+    const double scatters = scattering_of(m, channel);
+    lit_point p = {s, scatters + absorbs[channel], scatters, {0.0, 0.0, 0.0}};
     for (int i = 0; i < steps; i++) {
         const double depth = 10.0 * (i + 0.5) / steps;
         p.at.z = from + depth;
@@ -209,10 +264,13 @@ static double airlight_of(const scene *s, int channel, double (*lit)(const lit_p
     return sum;
 }
 
-static void expect_airlight_from(double from, const char *assignments, double (*lit)(const lit_point *p))
+static void expect_airlight_from(double from, const char *assignments, bool by_channel,
+                                 double (*lit)(const lit_point *p))
 {
     scene *s = scene_from(cloud_scene);
     set_all(s, assignments);
+    if (by_channel)
+        scatter_by_channel(&s->solids[0].surface, 0.05, 0.2, 0.7);
     for (int c = 0; c < 3; c++) {
         const estimate e = look_by_chance(s, c);
         const double expected = airlight_of(s, c, lit, from, lit == by_point ? 2000000 : 1000);
@@ -220,12 +278,13 @@ static void expect_airlight_from(double from, const char *assignments, double (*
             !(e.standard_error < 0.02 * expected))
             fail_msg("%s: %.6f +- %.2g instead of %.6f", assignments, e.value, e.standard_error, expected);
     }
+    optical_data_release(s->solids[0].surface.scatter_values);
     scene_destroy(s);
 }
 
 static void expect_airlight(const char *assignments, double (*lit)(const lit_point *p))
 {
-    expect_airlight_from(0.0, assignments, lit);
+    expect_airlight_from(0.0, assignments, false, lit);
 }
 
 static void beams_have_the_airlight_integral(void **state)
@@ -239,7 +298,10 @@ static void beams_have_the_airlight_integral(void **state)
     expect_airlight("lamp.kind=point lamp.radius=0.3", by_sphere);
     expect_airlight("lamp.kind=disc lamp.radius=0.5", by_disc);
     /* the camera 2 units before the box */
-    expect_airlight_from(2.0, "lamp.kind=point cloud.size.z=10 cloud.position=0,0,7", by_point);
+    expect_airlight_from(2.0, "lamp.kind=point cloud.size.z=10 cloud.position=0,0,7", false, by_point);
+    expect_airlight_from(0.0, "lamp.kind=point", true, by_point);
+    expect_airlight_from(0.0, "lamp.kind=cone lamp.half_angle_deg=2", true, by_point);
+    expect_airlight_from(0.0, "lamp.kind=point lamp.radius=0.3", true, by_sphere);
 }
 
 /* Narrow, wide, near and far ones, and those next to the path. */
@@ -352,6 +414,21 @@ static void a_ball_in_a_furnace_is_invisible(void **state)
         }
         render_result_destroy(r);
     }
+    scene_destroy(s);
+}
+
+/* So is one whose channels scatter differently, in the mean. */
+static void a_colored_ball_in_a_furnace_is_invisible(void **state)
+{
+    (void)state;
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 64, integrator: path, paths: 65536, beyond: black}\n"
+                          "camera: {position: [0, 0, 4], target: [0.3, 0, 0], fov_deg: 0.001}\n"
+                          "background: {color: [0.5, 0.6, 0.7]}\n"
+                          "solids: {ball: {shape: sphere, transparency: 1, ior: 1, asymmetry: 0.6}}\n");
+    scatter_by_channel(&s->solids[0].surface, 0.2, 0.7, 2.0);
+    for (int c = 0; c < 3; c++)
+        expect_estimate(look_by_chance(s, c), 0.5 + 0.1 * c);
+    optical_data_release(s->solids[0].surface.scatter_values);
     scene_destroy(s);
 }
 
@@ -518,6 +595,8 @@ int main(void)
         cmocka_unit_test(the_phase_function_has_its_moments),
         cmocka_unit_test(cosines_are_drawn_by_the_phase_function),
         cmocka_unit_test(what_passes_is_that_of_beer_and_lambert),
+        cmocka_unit_test(channels_lose_their_own_share),
+        cmocka_unit_test(a_wavelength_loses_its_own_share),
         cmocka_unit_test(lamps_lose_what_is_scattered),
         cmocka_unit_test(beams_have_the_airlight_integral),
         cmocka_unit_test(extreme_beams_have_the_airlight_integral),
@@ -526,6 +605,7 @@ int main(void)
         cmocka_unit_test(basic_radiance_falls_at_the_face),
         cmocka_unit_test(photons_do_not_scatter),
         cmocka_unit_test(a_ball_in_a_furnace_is_invisible),
+        cmocka_unit_test(a_colored_ball_in_a_furnace_is_invisible),
         cmocka_unit_test(the_h_function_is_that_of_the_table),
         cmocka_unit_test(a_half_space_has_its_plane_albedo),
         cmocka_unit_test(a_half_space_reflects_a_lamp),
