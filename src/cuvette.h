@@ -202,7 +202,7 @@ CUVETTE_API cuvette_status cuvette_scene_each_parameter(const cuvette_scene *sce
 
 /* --- objects ---
  *
- * Lights, materials, solids, meshes and textures have names: at most 63 letters, digits, _ and -, of which the first is
+ * Lights, materials, solids, meshes, textures and data have names: at most 63 letters, digits, _ and -, of which the first is
  * a letter or _; names are unique within a scene. A scene holds at most 1024 lights, 256 materials, 64 meshes, 64
  * textures, 64 planes and solids of meshes together, and 2 million other solids. Where solids overlap, the medium is
  * that of the solid with the highest `priority`, or of the one added first if priorities are equal. */
@@ -212,7 +212,8 @@ typedef enum cuvette_object {
     CUVETTE_MATERIAL,
     CUVETTE_SOLID,
     CUVETTE_MESH,
-    CUVETTE_TEXTURE
+    CUVETTE_TEXTURE,
+    CUVETTE_DATA
 } cuvette_object;
 
 CUVETTE_API cuvette_status cuvette_scene_add_light(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
@@ -259,6 +260,16 @@ CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, con
 CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const char *name, int width, int height,
                                                     const float *rgb, cuvette_diagnostic *why);
+
+/* Adds optical data: from a file (set NAME.file), or from the caller's arrays, which are copied: count wavelengths in
+ * nm, above 0 and ascending; the values there, which are refractive indices, reflectances, powers, or coefficients in
+ * 1/m; and extinction indices of a medium, or NULL. A material uses them by its parameters `medium_data`, `color_data`,
+ * `absorb_data` and `scatter_data`, a light by `spectrum_data`. As with textures, clones share the arrays, written
+ * files do not contain them, and setting a parameter of the data discards them. */
+CUVETTE_API cuvette_status cuvette_scene_add_data(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
+CUVETTE_API cuvette_status cuvette_scene_add_values(cuvette_scene *scene, const char *name, const double *lambda_nm,
+                                                    const double *values, const double *extinction, size_t count,
+                                                    cuvette_diagnostic *why);
 
 /* A material can be removed only when no solid uses it. */
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);

@@ -1,10 +1,13 @@
-/* The objects of a scene: adds, removes, translates, rotates and scales lights, materials and solids; adds meshes and
- * textures, also from arrays. */
+/* The objects of a scene: adds, removes, translates, rotates and scales lights, materials and solids; adds meshes,
+ * textures and optical data, also from arrays. */
 #include "engine/engine_private.h"
+#include "optics/optical_data.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
@@ -82,11 +85,9 @@ cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuv
 
 static param_group group_of(cuvette_object kind)
 {
-    static const param_group groups[] = {[CUVETTE_LIGHT] = PARAM_LIGHT,
-                                         [CUVETTE_MATERIAL] = PARAM_MATERIAL,
-                                         [CUVETTE_SOLID] = PARAM_SOLID,
-                                         [CUVETTE_MESH] = PARAM_MESH,
-                                         [CUVETTE_TEXTURE] = PARAM_TEXTURE};
+    static const param_group groups[] = {
+        [CUVETTE_LIGHT] = PARAM_LIGHT, [CUVETTE_MATERIAL] = PARAM_MATERIAL, [CUVETTE_SOLID] = PARAM_SOLID,
+        [CUVETTE_MESH] = PARAM_MESH,   [CUVETTE_TEXTURE] = PARAM_TEXTURE,   [CUVETTE_DATA] = PARAM_DATA};
     return (size_t)kind < sizeof groups / sizeof *groups ? groups[kind] : PARAM_GROUP_COUNT;
 }
 
@@ -215,5 +216,45 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
     }
     texture_entry_unload(&s->model->textures[index]);
     s->model->textures[index].data = made;
+    return CUVETTE_OK;
+}
+
+cuvette_status cuvette_scene_add_data(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name);
+    return engine_report(scene_add(s->model, PARAM_DATA, name, NULL, &inner), &inner, why);
+}
+
+/* Pairs of a wavelength and a value, as optical_curve has them; NULL without memory. */
+static double *pairs_of(const double *lambda_nm, const double *values, size_t count)
+{
+    double *point = count <= SIZE_MAX / (2 * sizeof *point) ? malloc((2 * count + 1) * sizeof *point) : NULL;
+    for (size_t i = 0; point && i < count; i++) {
+        point[2 * i] = lambda_nm[i];
+        point[2 * i + 1] = values[i];
+    }
+    return point;
+}
+
+cuvette_status cuvette_scene_add_values(cuvette_scene *s, const char *name, const double *lambda_nm,
+                                        const double *values, const double *extinction, size_t count,
+                                        cuvette_diagnostic *why)
+{
+    ENGINE_CHANGE(s, name, lambda_nm, values);
+    const optical_data *made = NULL;
+    size_t index = 0;
+    double *first = pairs_of(lambda_nm, values, count),
+           *second = extinction ? pairs_of(lambda_nm, extinction, count) : NULL;
+    status code = first && !extinction == !second ? STATUS_OK : out_of_memory(&inner);
+    THEN(code, optical_data_create(NULL, (optical_curve){first, count}, (optical_curve){second, second ? count : 0},
+                                   &made, &inner));
+    free(first);
+    free(second);
+    THEN(code, scene_add(s->model, PARAM_DATA, name, &index, &inner));
+    if (code != STATUS_OK) {
+        optical_data_release(made);
+        return engine_report(code, &inner, why);
+    }
+    s->model->data[index].data = made;
     return CUVETTE_OK;
 }

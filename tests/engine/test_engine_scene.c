@@ -294,6 +294,55 @@ static void a_texture_from_memory_is_visible(void **state)
     cuvette_engine_destroy(engine);
 }
 
+/* A wall of 30 % reflectance, measured at three wavelengths. */
+static void values_become_optical_data(void **state)
+{
+    (void)state;
+    static const char *const set[][2] = {{"render.width", "1"},       {"render.height", "1"},
+                                         {"render.depth", "0"},       {"camera.position", "0,0,-5"},
+                                         {"camera.target", "0,0,0"},  {"background.ambient", "1,1,1"},
+                                         {"wall.color_data", "grey"}, {"wall.ambient", "1"},
+                                         {"wall.diffuse", "0"},       {"wall.specular", "0"}};
+    static const double lambda_nm[] = {400.0, 500.0, 700.0}, falling_nm[] = {500.0, 400.0, 700.0},
+                        grey[] = {0.3, 0.3, 0.3}, negative[] = {0.0, 0.0, -1.0};
+    float seen[3];
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s, *clone;
+    fine(cuvette_scene_create(&s, &why), &why);
+    assert_int_equal(cuvette_scene_add_values(s, "grey", falling_nm, grey, NULL, 3, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_add_values(s, "grey", lambda_nm, grey, negative, 3, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_add_values(s, "grey", lambda_nm, grey, NULL, 0, &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_scene_count(s, CUVETTE_DATA), 0);
+    fine(cuvette_scene_add_values(s, "grey", lambda_nm, grey, grey, 3, &why), &why);
+    assert_string_equal(cuvette_scene_name(s, CUVETTE_DATA, 0), "grey");
+    assert_int_equal(cuvette_scene_add_values(s, "grey", lambda_nm, grey, NULL, 3, &why), CUVETTE_BAD_INPUT);
+    fine(cuvette_scene_add_solid(s, "wall", "box", NULL, &why), &why);
+    for (size_t i = 0; i < COUNT(set); i++)
+        turn(s, set[i][0], set[i][1]);
+    char text[4096];
+    assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "grey"));
+    assert_int_equal(cuvette_scene_write_link(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "grey was given as"));
+    fine(cuvette_scene_clone(s, &clone, &why), &why);
+    cuvette_scene_destroy(s);
+    cuvette_request request = CUVETTE_REQUEST;
+    request.width = request.height = 1, request.rgb = seen;
+    fine(cuvette_engine_render(engine, clone, &request, NULL, &why), &why);
+    for (int k = 0; k < 3; k++)
+        assert_true(fabsf(seen[k] - 0.3F) < 1e-6F);
+    turn(clone, "grey.scale", "2"); /* discards the arrays, so a file is missing */
+    assert_int_equal(cuvette_engine_render(engine, clone, &request, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "no file"));
+    cuvette_scene_destroy(clone);
+    fine(cuvette_scene_create(&s, &why), &why);
+    fine(cuvette_scene_add_data(s, "crown", &why), &why);
+    assert_int_equal(cuvette_scene_count(s, CUVETTE_DATA), 1);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -303,6 +352,7 @@ int main(void)
         cmocka_unit_test(a_scene_built_by_calls_equals_its_file),
         cmocka_unit_test(objects_are_added_moved_turned_and_removed),
         cmocka_unit_test(a_texture_from_memory_is_visible),
+        cmocka_unit_test(values_become_optical_data),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

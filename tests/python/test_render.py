@@ -260,3 +260,19 @@ def test_names_are_offered_and_corrected(rod):
         rod.parameters["liquid.iro"]
     with pytest.raises(cuvette.InputError, match="did you mean 'render.depth'"):
         rod.render(dept=8)
+
+
+def test_data_come_from_arrays(rod):
+    rod.add_values("dye", [400, 700], numpy.array([3.0, 3.0]))
+    assert rod.data == ("dye",)
+    rod["liquid.absorb_data"] = "dye"
+    dyed = rod.render(depth=3).array
+    rod["liquid.absorb_data"] = ""
+    assert numpy.array_equal(dyed, rod.render({"liquid.absorb_per_m": (3, 3, 3)}, depth=3).array)
+    with pytest.raises(cuvette.InputError, match="shapes"):
+        rod.add_values("wrong", [400, 700], [1.0])
+    with pytest.raises(cuvette.InputError, match="dye2: it has 400 nm after 700 nm"):
+        rod.add_values("dye2", [700, 400], [1.0, 2.0])
+    with pytest.raises(cuvette.InputError):
+        rod.add_data("crown", file="nowhere.yml", scale="none")
+    assert rod.data == ("dye",)

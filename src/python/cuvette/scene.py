@@ -160,7 +160,7 @@ class Scene(Tracer):
         return list(self.keys())
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        """Pickles the scene as the text of its file: without meshes and textures from arrays."""
+        """Pickles the scene as the text of its file: without meshes, textures and data from arrays."""
         return read_text_scene, (str(self), "scene of another process")
 
     # --- objects
@@ -229,6 +229,21 @@ class Scene(Tracer):
         memory = ffi.from_buffer("float[]", array)
         call(lib.cuvette_scene_add_pixels, self._scene, encoded(name), array.shape[1], array.shape[0], memory)
 
+    def add_data(self, name: str, **values: Any) -> None:
+        call(lib.cuvette_scene_add_data, self._scene, encoded(name))
+        self._set_new(name, values)
+
+    @described("cuvette_scene_add_values")
+    def add_values(self, name: str, lambda_nm: Any, values: Any, extinction: Any = None) -> None:
+        """Optical data from arrays of one length: wavelengths in nm, values there, and extinction indices or None."""
+        given = [lambda_nm, values] + ([] if extinction is None else [extinction])
+        arrays = [numpy.ascontiguousarray(each, numpy.float64) for each in given]
+        if any(each.ndim != 1 or each.shape != arrays[0].shape for each in arrays):
+            shapes = ", ".join(str(each.shape) for each in arrays)
+            raise InputError(f"the arrays have the shapes {shapes}", "pass arrays of n numbers")
+        memory = [ffi.from_buffer("double[]", each) for each in arrays] + ([NULL] if extinction is None else [])
+        call(lib.cuvette_scene_add_values, self._scene, encoded(name), *memory, len(arrays[0]))
+
     @described("cuvette_scene_remove")
     def remove(self, name: str) -> None:
         call(lib.cuvette_scene_remove, self._scene, encoded(name))
@@ -281,6 +296,10 @@ class Scene(Tracer):
     @property
     def textures(self) -> Tuple[str, ...]:
         return self._names(lib.CUVETTE_TEXTURE)
+
+    @property
+    def data(self) -> Tuple[str, ...]:
+        return self._names(lib.CUVETTE_DATA)
 
     # --- the scene
 

@@ -32,6 +32,8 @@ static status check_files(const scene *s, diagnostic *why)
         return refuse_arrays(s->textures[0].name, why);
     if (s->texture_count > 0)
         return refuse_file(s->textures[0].name, s->textures[0].path, why);
+    if (s->data_count > 0 && !s->data[0].path[0])
+        return refuse_arrays(s->data[0].name, why);
     if (s->data_count > 0)
         return refuse_file(s->data[0].name, s->data[0].path, why);
     for (size_t i = 0; i < s->mesh_count; i++) {

@@ -245,6 +245,12 @@ static status check_sources(const scene *s, diagnostic *why)
                             "the texture %.80s was given as pixels, which cannot be stored in a scene file",
                             s->textures[i].name);
     }
+    for (size_t i = 0; i < s->data_count; i++) {
+        if (s->data[i].data && !s->data[i].path[0])
+            return diagnose(why, STATUS_BAD_INPUT, "write them to a file, and give its name",
+                            "the data %.80s were given as arrays, which cannot be stored in a scene file",
+                            s->data[i].name);
+    }
     return STATUS_OK;
 }
 

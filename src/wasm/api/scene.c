@@ -84,11 +84,8 @@ char *wasm_scene_names(const cuvette_scene *scene)
     static const struct {
         const char *key;
         cuvette_object kind;
-    } kinds[] = {{"lights", CUVETTE_LIGHT},
-                 {"materials", CUVETTE_MATERIAL},
-                 {"solids", CUVETTE_SOLID},
-                 {"meshes", CUVETTE_MESH},
-                 {"textures", CUVETTE_TEXTURE}};
+    } kinds[] = {{"lights", CUVETTE_LIGHT}, {"materials", CUVETTE_MATERIAL}, {"solids", CUVETTE_SOLID},
+                 {"meshes", CUVETTE_MESH},  {"textures", CUVETTE_TEXTURE},   {"data", CUVETTE_DATA}};
     json_t *all = json_object();
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         json_t *list = json_array();
