@@ -415,14 +415,65 @@ static bool prepare_pair(const lint_input *input, const neighbour *a, const neig
     return (p->overlaps || p->gaps) && p->low.x < p->high.x && p->low.y < p->high.y && p->low.z < p->high.z;
 }
 
-static size_t count_pairs(const lint_input *input, const neighbour *all, int count)
+/* Pairs that need examination, in the order of the solids. */
+typedef struct candidate {
+    int a, b; /* indices of neighbours, a < b */
+} candidate;
+
+typedef struct candidates {
+    candidate *list;
+    size_t count, room;
+} candidates;
+
+/* A neighbour's range in x, enlarged by the largest gap that a pair with it may have. */
+typedef struct reach {
+    double low, high;
+    int of;
+} reach;
+
+static int by_low(const void *a, const void *b)
 {
-    size_t pairs = 0;
+    const reach *one = a, *two = b;
+    return (one->low > two->low) - (one->low < two->low);
+}
+
+static int by_solids(const void *a, const void *b)
+{
+    const candidate *one = a, *two = b;
+    return one->a != two->a ? one->a - two->a : one->b - two->b;
+}
+
+static status add_candidate(const lint_input *input, const neighbour *all, int i, int k, candidates *to,
+                            diagnostic *why)
+{
+    const candidate c = {i < k ? i : k, i < k ? k : i};
     pair p;
-    for (int i = 0; i < count && !cancel_asked(); i++)
-        for (int k = i + 1; k < count; k++)
-            pairs += prepare_pair(input, &all[i], &all[k], &p);
-    return pairs;
+    if (!prepare_pair(input, &all[c.a], &all[c.b], &p))
+        return STATUS_OK;
+    if (!GROW(to->list, to->room, to->count + 1))
+        return out_of_memory(why);
+    to->list[to->count++] = c;
+    return STATUS_OK;
+}
+
+/* By a sweep along x: solids far from each other are no pairs to look at. */
+static status find_candidates(const lint_input *input, const neighbour *all, int count, candidates *to, diagnostic *why)
+{
+    reach *sweep = calloc((size_t)count + 1, sizeof *sweep);
+    status code = sweep ? STATUS_OK : out_of_memory(why);
+    for (int i = 0; sweep && i < count; i++) {
+        const double pad = GAP_FRACTION * (isfinite(all[i].thickness) ? all[i].thickness : 1.0);
+        sweep[i] = (reach){all[i].box.low.x - pad, all[i].box.high.x + pad, i};
+    }
+    if (sweep)
+        qsort(sweep, (size_t)count, sizeof *sweep, by_low);
+    for (int i = 0; code == STATUS_OK && i < count && !cancel_asked(); i++)
+        for (int k = i + 1; code == STATUS_OK && k < count && sweep[k].low <= sweep[i].high; k++)
+            code = add_candidate(input, all, sweep[i].of, sweep[k].of, to, why);
+    free(sweep);
+    if (to->count > 1)
+        qsort(to->list, to->count, sizeof *to->list, by_solids);
+    return code;
 }
 
 /* Solids with a note: of many copies of a solid, the first pair has it. */
@@ -446,24 +497,27 @@ static bool is_noted(const noted_pairs *n, const solid *a, const solid *b)
 static status examine_all(const lint_input *input, const neighbour *all, int count, float *gap, double *middle,
                           noted_pairs *noted, diagnostic *why)
 {
-    const size_t pairs = count_pairs(input, all, count);
-    for (int i = 0; i < count && !cancel_asked(); i++)
-        for (int k = i + 1; k < count; k++) {
-            const solid *a = all[i].owner, *b = all[k].owner;
-            pair p;
-            if (!prepare_pair(input, &all[i], &all[k], &p) || (p.overlaps && is_covered(input, &all[i], &all[k])) ||
-                is_noted(noted, a, b))
-                continue;
-            p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs))));
-            p.gap = gap;
-            p.middle = middle;
-            if (!examine_pair(&p))
-                continue;
-            if (!GROW(noted->list, noted->room, noted->count + 1))
-                return out_of_memory(why);
-            noted->list[noted->count++] = (noted_pair){a, b};
-        }
-    return cancel_check(why);
+    candidates pairs = {.list = NULL};
+    status code = find_candidates(input, all, count, &pairs, why);
+    for (size_t i = 0; code == STATUS_OK && i < pairs.count && !cancel_asked(); i++) {
+        const neighbour *a = &all[pairs.list[i].a], *b = &all[pairs.list[i].b];
+        pair p;
+        if (!prepare_pair(input, a, b, &p) || (p.overlaps && is_covered(input, a, b)) ||
+            is_noted(noted, a->owner, b->owner))
+            continue;
+        p.lattice = (int)fmax(LATTICE_LEAST, fmin(LATTICE_MOST, sqrt(LINES_MAX / (3.0 * (double)pairs.count))));
+        p.gap = gap;
+        p.middle = middle;
+        if (!examine_pair(&p))
+            continue;
+        if (!GROW(noted->list, noted->room, noted->count + 1))
+            code = out_of_memory(why);
+        else
+            noted->list[noted->count++] = (noted_pair){a->owner, b->owner};
+    }
+    free(pairs.list);
+    THEN(code, cancel_check(why));
+    return code;
 }
 
 status lint_neighbours(const lint_input *input, diagnostic *why)

@@ -25,15 +25,35 @@ static bool is_placeless(const scene *s, const solid *owner)
     return points && !points->data;
 }
 
+/* The radius of a ball about a shape's position that contains it, however it is turned. */
+static double reach_of(const solid_shape *shape)
+{
+    const shape_rule *rule = shape_of(shape);
+    if (!rule->extent || (rule->triangles && !shape->mesh))
+        return (double)INFINITY;
+    const shape_extent e = rule->extent(shape);
+    return 0.5 * vec3_length(vec3_add(e.box.low, e.box.high)) + e.ball;
+}
+
+/* Whether their balls are apart, which is quickly seen of most pairs. reach: of b. */
+static bool balls_are_apart(const solid_shape *a, const solid_shape *b, double reach)
+{
+    const double both = 1.000001 * (reach_of(a) + reach);
+    const vec3 between = vec3_sub(a->position, b->position);
+    return vec3_dot(between, between) > both * both;
+}
+
 const solid *scene_cover(const scene *s, const solid *hidden)
 {
     if (s->solid_count > COVER_SOLIDS_MAX || hidden->points[0])
         return NULL;
     const placed_shape h = place_shape(s, hidden);
+    const double reach = reach_of(&h.shape);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
-        if (rule->covers && !cover->points[0] && scene_has_precedence(cover, hidden)) {
+        if (rule->covers && !cover->points[0] && scene_has_precedence(cover, hidden) &&
+            !balls_are_apart(&cover->shape, &h.shape, reach)) {
             const placed_shape c = place_shape(s, cover);
             if (rule->covers(&c, &h))
                 return cover;
