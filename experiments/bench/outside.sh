@@ -11,7 +11,7 @@ spent() { # spent CONTESTANT TRACED COMMAND...: notes the CPU seconds of a comma
     read -r user system < <({ time "${@:3}" >"$work/out" 2>"$work/err"; } 2>&1)
     note "$1" "$(awk -v u="$user" -v s="$system" 'BEGIN { print u + s }')" "$2"
 }
-picture() { # picture CONTESTANT SCENE [SET...]: a PNG alone; the JSON would list all parameters of all solids
+plain() { # plain CONTESTANT SCENE [SET...]: a PNG alone; the JSON would list all parameters of all solids
     local sets=(--set render.threads=1)
     for one in "${@:3}"; do sets+=(--set "$one"); done
     spent "$1" 0 "$ours" render "$2" -o "$work/image.png" "${sets[@]}"
@@ -43,7 +43,7 @@ prepare() {
 round() {
     local n kind
     for n in $solids; do
-        picture "solids $n" "$(spheres 1 "$n" 1)" render.depth=0 render.width=160 render.height=120
+        plain "solids $n" "$(spheres 1 "$n" 1)" render.depth=0 render.width=160 render.height=120
     done
     image small "$rod" image.png render.width=16 render.height=16
     image rod "$rod" image.png render.width=400 render.height=300
