@@ -5,8 +5,8 @@
  * s_k over lengths d_k is not scattered with the probability exp(-sum s_k d_k); otherwise it scatters where the sum
  * reaches -ln u for a random number u. So a ray's throughput falls only by absorption, by channel, up to this point.
  * Shadow rays have no free flights; they lose the light that is scattered out of them. In a spectral film s_k is that
- * at the ray's wavelength. In an RGB film whose media scatter the channels differently, a ray flies by the coefficient of
- * a random channel, and each channel's throughput is multiplied by its own density of flights over the mean of the
+ * at the ray's wavelength. In an RGB film whose media scatter the channels differently, a ray flies by the coefficient
+ * of a random channel, and each channel's throughput is multiplied by its own density of flights over the mean of the
  * three densities, which no channel's weight exceeds by more than 3 (the balance heuristic; Veach, "Robust Monte Carlo
  * Methods for Light Transport Simulation", 1997, 9.2.2).
  *
