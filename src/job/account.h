@@ -36,6 +36,6 @@ uint64_t job_account_hash(const job_account *a);
 double job_account_wall_s(const job_account *a);
 double job_account_cpu_s(const job_account *a);
 
-/* Reports the notes on the account's frame, what its image lacks with the remedy (frame_notes.c); none if no frame is
+/* Reports the notes on the account's frame, what its image lacks with the remedy; none if no frame is
  * complete. */
 void frame_notes(const job_account *a, const note_sink *taker);
