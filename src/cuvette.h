@@ -253,7 +253,7 @@ typedef struct cuvette_triangles {
 CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name,
                                                        const cuvette_triangles *triangles, cuvette_diagnostic *why);
 
-/* Adds a texture: from a PNG, JPEG, PFM or 24-bit BMP file (set NAME.file), or from the caller's linear RGB floats,
+/* Adds a texture: from a PNG, JPEG, BMP, PFM or Radiance HDR file (set NAME.file), or from the caller's linear RGB floats,
  * which are copied, row by row from the top (repeated, trilinear). A material or a solid uses it by its parameter
  * `texture`. Clones share a texture from an array, but written files do not contain it; setting one of its parameters
  * discards the array. */
@@ -697,7 +697,7 @@ CUVETTE_API cuvette_status cuvette_scene_curve(const cuvette_scene *scene, const
 
 typedef struct cuvette_image cuvette_image;
 
-/* Reads a PNG, JPEG, PFM or 24-bit BMP file. */
+/* Reads a PNG, JPEG, BMP, PFM or Radiance HDR file. */
 CUVETTE_API cuvette_status cuvette_image_read(const char *path, cuvette_image **out, cuvette_diagnostic *why);
 CUVETTE_API void cuvette_image_destroy(cuvette_image *image);
 /* Linear RGB, row by row from the top, valid until the image is destroyed; sets width and height. NULL for no image. */

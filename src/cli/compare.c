@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "report/json.h"
 #include "report/report.h"
 
@@ -32,7 +33,7 @@ static const command_form form = {
     .about =
         "Compare the images A and B as a display shows them: mean squared error, peak signal-to-noise ratio, "
         "structural similarity, FLIP, the largest difference and the fraction of differing pixels. Both images must "
-        "have the same size; PNG, JPEG, PFM and 24-bit BMP can be mixed.\vFor example:\n"
+        "have the same size; each can be a " IMAGE_FORMATS " file.\vFor example:\n"
         "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
@@ -45,15 +46,26 @@ typedef struct pair {
 static status check_request(const compare_request *request, diagnostic *why)
 {
     if (!request->paths[1])
-        return options_wrong("compare", NULL, why, "name two PNG, JPEG, PFM or 24-bit BMP files",
+        return options_wrong("compare", NULL, why, "name two " IMAGE_FORMATS " files",
                              request->paths[0] ? "only one image is given" : "no images are given");
     return request->map ? outputs_check_image("--diff", request->map, request->paths, 2, why) : STATUS_OK;
 }
 
+static void note_file(const char *path, const image *img)
+{
+    char line[4096 + IMAGE_NOTE_MAX];
+    if (!img->note[0])
+        return;
+    snprintf(line, sizeof line, "%s: %s", path, img->note);
+    terminal_note(line);
+}
+
 static status measure(const compare_request *request, pair *p, diagnostic *why)
 {
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 2; i++) {
         TRY(image_read(request->paths[i], &p->images[i], &p->bits[i], why));
+        note_file(request->paths[i], p->images[i]);
+    }
     status result = image_compare(p->images[0], p->images[1], &p->found, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, request->paths[0], 0, 0);

@@ -220,7 +220,7 @@ _cuvette()
         if [[ $current == -* ]]; then
             _cuvette_words --diff --json --memory-limit --help --usage --version
         else
-            _cuvette_files 'png|jpg|jpeg|pfm|bmp'
+            _cuvette_files 'png|jpg|jpeg|pfm|bmp|hdr'
         fi
         ;;
     realism)

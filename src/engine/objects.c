@@ -206,7 +206,7 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
                                  "a texture cannot be %d x %d", width, height);
     if (code == STATUS_OK) {
         memcpy(img->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
-        code = texture_create(img, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
+        code = texture_create(img, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
     }
     image_destroy(img);
     THEN(code, scene_add(s->model, PARAM_TEXTURE, name, &index, &inner));

@@ -1,5 +1,5 @@
-/* The file formats behind image.h: three that are written and read, and BMP, which is only read; and what these have in
- * common. Writers write an image to a stream and leave stream errors to the caller that closes it; readers decode a
+/* The file formats behind image.h: three that are written and read, and others that are only read; and what these have
+ * in common. Writers write an image to a stream and leave stream errors to the caller that closes it; readers decode a
  * file in memory. Diagnostics lack the file name. Ownership: an image that was read is the caller's; nothing is
  * allocated unless the status is STATUS_OK. */
 #pragma once
@@ -25,10 +25,76 @@
 /* STATUS_BAD_INPUT unless a file of file_bytes may hold an image of this size. */
 status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why);
 
-/* Creates an image of the size in the file, and the decoding table of its values 0..maximum. Both are the caller's,
+/* The number in 1 to 4 bytes, the most significant first, or last. */
+static inline uint32_t codec_big_endian(const unsigned char *at, int bytes)
+{
+    uint32_t value = 0;
+    for (int i = 0; i < bytes; i++)
+        value = value << 8 | at[i];
+    return value;
+}
+
+static inline uint32_t codec_little_endian(const unsigned char *at, int bytes)
+{
+    uint32_t value = 0;
+    for (int i = 0; i < bytes; i++)
+        value |= (uint32_t)at[i] << 8 * i;
+    return value;
+}
+
+/* ---- color.c ---- */
+
+/* The colour space of a file: {0} is sRGB. A transfer function for each channel, from values 0..1 to light 0..1: (a x +
+ * b)^g + e from x = d on, c x + f below (ICC.1:2022, 10.18); or interpolated in a table of count big-endian numbers of
+ * 16 bits, which is borrowed. Then the matrix to linear sRGB. */
+typedef struct codec_curve {
+    double g, a, b, c, d, e, f;
+    const unsigned char *table;
+    size_t count; /* 0: no table */
+} codec_curve;
+
+typedef struct codec_color {
+    bool curved; /* false: the transfer function of sRGB */
+    codec_curve curve[3];
+    bool mixes; /* false: the primaries of sRGB */
+    double to_srgb[3][3];
+} codec_color;
+
+void codec_color_set_curve(codec_color *color, const codec_curve *all);
+/* Sets the primaries: CIE xy of white, red, green, blue. White stays white, by Bradford's adaptation to D65. False, with
+ * color unchanged, if they span no colours. */
+bool codec_color_set_primaries(codec_color *color, const double xy[8]);
+/* The channels are CIE XYZ, without adaptation. */
+void codec_color_set_XYZ(codec_color *color);
+
+/* Reads an ICC profile of RGB with primaries, or of grey values. Returns NULL; or, with color unchanged, why the profile
+ * cannot be applied ("is damaged"). Tables of the result borrow from the bytes. */
+#define CODEC_PROFILE_NOTE "its colour profile %s, and is ignored: colours are read as sRGB"
+const char *codec_color_of_icc(const unsigned char *bytes, size_t size, codec_color *color);
+
+/* For each channel a table of the linear values of 0..maximum; color NULL: value / maximum. Channels may have one and
+ * the same table. The caller frees them, even after a failure. */
+typedef struct codec_tables {
+    float *of[3];
+} codec_tables;
+status codec_tables_make(const codec_color *color, const unsigned maximum[3], codec_tables *out, diagnostic *why);
+void codec_tables_free(codec_tables *tables); /* {NULL} is allowed */
+
+/* Applies the matrix, limits what it changed to 0..most, and notes how many pixels that affects. */
+void codec_color_apply(const codec_color *color, double most, image *img);
+
+/* ---- codec.c ---- */
+
+/* Creates an image of the size in the file, and the decoding tables of its values 0..maximum. Both are the caller's,
  * even after a failure. */
-status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
-                   diagnostic *why);
+status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, const codec_color *color,
+                   image **img, codec_tables *tables, diagnostic *why);
+
+/* The orientation in EXIF data, from its TIFF header on: 1 to 8 (EXIF 2.32, 4.6.4: 1: rows from the top; 6: rows from
+ * the right, as of a camera on its side). 1 if there is none, or if the data are damaged. */
+int codec_exif_orientation(const unsigned char *bytes, size_t size);
+/* Turns an image that is stored in this orientation upright. Replaces *img. */
+status codec_orient(image **img, int orientation, diagnostic *why);
 
 /* Runs a function in a new thread that can only compute: it opens nothing, sends nothing and starts nothing
  * (base/os_confine.h), whatever a damaged file makes it do. It has access to the memory of the process, so this is a
@@ -83,10 +149,27 @@ status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast
 status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnostic *why);
 status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why);
 
-status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);
-status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+/* bits: see image_read. */
+status codec_png_read(const unsigned char *bytes, size_t size, image_values values, image **out, int *bits,
+                      diagnostic *why);
+status codec_jpeg_read(const unsigned char *bytes, size_t size, image_values values, image **out, diagnostic *why);
+status codec_bmp_read(const unsigned char *bytes, size_t size, image_values values, image **out, int *bits,
+                      diagnostic *why);
 status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
-status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+status codec_hdr_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+
+/* --- png_chunks.c --- */
+
+/* The orientation of a PNG file, by its chunk eXIf; and for IMAGE_LIGHT its colour space, by the chunks cICP, iCCP, sRGB, gAMA with cHRM, in this order
+ * (PNG specification, 3rd edition, 4.3). *profile is memory that the colour space borrows from, for the caller to
+ * free, or NULL. What cannot be applied is added to note, "" for nothing. */
+typedef struct png_space {
+    codec_color color;
+    int orientation;
+    unsigned char *profile;
+    char note[IMAGE_NOTE_MAX];
+} png_space;
+status png_read_space(const unsigned char *bytes, size_t size, image_values values, png_space *out, diagnostic *why);
 
 /* --- png_bands.c --- */
 

@@ -1,9 +1,13 @@
-/* Images in memory: creation, ownership, rows, packing. */
+/* Images in memory: creation, ownership, notes, checks, rows, packing. */
 #include "image/image.h"
 
 #include "base/budget.h"
+#include "base/cancel.h"
+#include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,6 +60,54 @@ image *image_retain(const image *img)
     return retained;
 }
 
+/* ---- notes and checks ---- */
+
+void image_note(char note[IMAGE_NOTE_MAX], const char *text, ...)
+{
+    size_t used = strlen(note);
+    va_list arguments;
+    va_start(arguments, text);
+    if (used > 0 && used + 3 < IMAGE_NOTE_MAX) {
+        memcpy(note + used, "; ", 3);
+        used += 2;
+    }
+    vsnprintf(note + used, IMAGE_NOTE_MAX - used, text, arguments);
+    va_end(arguments);
+}
+
+status image_check_light(const image *img, char note[IMAGE_NOTE_MAX], float *largest, diagnostic *why)
+{
+    const size_t width = (size_t)img->width, count = 3 * width * (size_t)img->height;
+    size_t negative = 0, lowest = 0;
+    float most = 0.0F;
+    for (size_t i = 0; i < count; i++) {
+        const float value = img->pixel[i];
+        if (cancel_asked_at(i))
+            return cancel_check(why);
+        if (!isfinite(value))
+            return diagnose(why, STATUS_BAD_INPUT, "use an image with finite values",
+                            "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
+                            i / 3 / width);
+        most = value > most ? value : most;
+        negative += value < 0.0F;
+        lowest = value < img->pixel[lowest] ? i : lowest;
+    }
+    if (negative > 0 && -img->pixel[lowest] > most / 10.0F)
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "use an image of values from 0; only small negative ones, down to a tenth of the largest, are "
+                        "read as 0",
+                        "the pixel in column %zu, row %zu from the top is negative: %g", lowest / 3 % width,
+                        lowest / 3 / width, (double)img->pixel[lowest]);
+    if (negative > 0)
+        image_note(note, "%zu small negative values, down to %.3g, are read as 0", negative,
+                   (double)img->pixel[lowest]);
+    if (largest)
+        *largest = most;
+    return STATUS_OK;
+}
+
+/* ---- rows ---- */
+
 static void copy_row(const void *of, int y, float *rgb)
 {
     const image *img = of;
@@ -71,7 +123,7 @@ image_rows image_rows_of(const image *img)
 /* ---- packing ---- */
 
 typedef struct image_head {
-    int64_t width, height, coded_bits;
+    int64_t width, height;
 } image_head;
 
 static bool is_side(int64_t length)
@@ -91,7 +143,7 @@ static size_t image_bytes(const image *img)
 
 status image_pack(const image *img, pack_writer *to, diagnostic *why)
 {
-    const image_head head = {img->width, img->height, img->coded_bits};
+    const image_head head = {img->width, img->height};
     TRY(pack_put(to, &head, sizeof head, why));
     return pack_put(to, img->pixel, image_bytes(img), why);
 }
@@ -101,11 +153,9 @@ status image_unpack(pack_reader *from, image **out, diagnostic *why)
     image_head head;
     *out = NULL;
     TRY(pack_get(from, &head, sizeof head, why));
-    if (!image_pack_holds(from, head.width, head.height, 3 * sizeof(float)) || head.coded_bits < 0 ||
-        head.coded_bits > 16)
+    if (!image_pack_holds(from, head.width, head.height, 3 * sizeof(float)))
         return pack_damaged(why, "the size of an image");
     TRY(image_create((int)head.width, (int)head.height, out, why));
-    (*out)->coded_bits = (int)head.coded_bits;
     const status code = pack_get(from, (*out)->pixel, image_bytes(*out), why);
     if (code != STATUS_OK) {
         image_destroy(*out);

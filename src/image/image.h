@@ -1,5 +1,5 @@
-/* Images in memory and in files: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec); BMP for reading only. No time
- * stamps, the same bytes for the same image; files are written atomically. Ownership: image_create and image_read
+/* Images in memory and in files: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec); BMP and Radiance's HDR for reading
+ * only. No time stamps, the same bytes for the same image; files are written atomically. Ownership: image_create and image_read
  * allocate an image, image_destroy releases it. */
 #pragma once
 
@@ -10,15 +10,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { IMAGE_NOTE_MAX = 256 };
+
 /* RGB, linear, rows from the top, pixel[(y * width + x) * 3 + channel]; 1.0 is white. alpha[y * width + x], 0 to 1,
  * NULL: 1 everywhere; only textures use it, and neither a packed nor a written image has it. Colours are not multiplied
- * by alpha. coded_bits is 8 or 16 if image_read decoded the pixels from sRGB values with that many bits, otherwise 0.
- * tone: exposure and curve for files with 8 bits. */
+ * by alpha. tone: exposure and curve for files with 8 bits. note: what reading a file ignored or changed, "" for
+ * nothing; it is neither packed nor written. */
 typedef struct image {
     int width, height;
     float *pixel, *alpha;
-    int coded_bits, owners;
+    int owners;
     image_tone tone;
+    char note[IMAGE_NOTE_MAX];
 } image;
 
 enum { IMAGE_SIDE_MAX = 65536 };
@@ -32,6 +35,14 @@ image *image_retain(const image *img);
 
 /* Gives the image alpha: 1 everywhere, for the caller to change. STATUS_FAILURE without memory. */
 status image_add_alpha(image *img, diagnostic *why);
+
+/* Adds to a note. */
+void image_note(char note[IMAGE_NOTE_MAX], const char *text, ...) __attribute__((format(printf, 2, 3)));
+
+/* Light is not negative, but resampling of images with sharp bright parts leaves small negative values: those down to a
+ * tenth of the largest value, which the caller replaces by 0, are added to the note. STATUS_BAD_INPUT for larger ones, and for
+ * values that are not finite. *largest, if not NULL: the largest value, at least 0. */
+status image_check_light(const image *img, char note[IMAGE_NOTE_MAX], float *largest, diagnostic *why);
 
 /* Packs an image as bytes (base/pack.h), without its tone, and unpacks it; pixel values are not checked. The caller
  * owns the unpacked image. STATUS_BAD_INPUT for damaged bytes, STATUS_FAILURE without memory. */
@@ -51,8 +62,9 @@ typedef enum image_format {
     IMAGE_PNG,
     IMAGE_JPEG,
     IMAGE_PFM,
-    IMAGE_BMP
-} image_format; /* IMAGE_BMP: for reading only; image_format_of never returns it */
+    IMAGE_BMP,
+    IMAGE_HDR
+} image_format; /* IMAGE_BMP, IMAGE_HDR: for reading only; image_format_of never returns them */
 image_format image_format_of(const char *path);
 
 /* A text that a PNG file carries with its pixels (PNG specification, 11.3.3): compressed iTXt, UTF-8. keyword: 1 to 79
@@ -99,12 +111,22 @@ bool image_is_png(const void *bytes, size_t size);
  * STATUS_BAD_INPUT if the file is damaged before the pixels, or the text is damaged or longer than limit. */
 status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
-/* Reads PNG (any depth and kind; colours as they are stored, whatever their alpha), JPEG (grey or RGB), PFM (colour or
- * grey, either byte order, finite) or BMP (24 bits, uncompressed), recognised by the first bytes, not by the name; PNG,
- * JPEG and BMP are decoded from sRGB to linear. STATUS_BAD_INPUT for truncated or damaged files, and for more than 2^28
- * pixels. file_bits, if not NULL, receives 8 or 16 for PNG, 8 for JPEG and BMP, and 32 for PFM. */
+/* The formats that are read, for messages. */
+#define IMAGE_FORMATS "PNG, JPEG, BMP, PFM or Radiance HDR"
+
+/* What the pixels shall be. IMAGE_LIGHT: linear light with the primaries of sRGB, by the colour space of the file, or
+ * by sRGB where a PNG, JPEG or BMP file has none. IMAGE_SRGB: by sRGB, whatever such a file says. IMAGE_CODED: the
+ * values of such a file as they are, 0 to 1. Files of floats have one and the same values in all cases. */
+typedef enum image_values { IMAGE_LIGHT, IMAGE_SRGB, IMAGE_CODED } image_values;
+
+/* Reads PNG (any depth and kind; colours as they are stored, whatever their alpha), JPEG (grey, RGB, CMYK), BMP (1 to 32
+ * bits), PFM (colour or grey, either byte order, finite) or Radiance HDR, recognised by the first bytes, not by the name,
+ * as IMAGE_LIGHT. Images that are stored lying on a side are turned upright (EXIF). STATUS_BAD_INPUT for truncated or
+ * damaged files, and for more than 2^28 pixels. file_bits, if not NULL, receives the bits of a channel: 8 or 16 for PNG
+ * and BMP, 8 for JPEG, and 32 for floats. */
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
 /* The same for the bytes of a file, which may have come from inside another; the diagnostic has no place. */
-status image_decode(const void *bytes, size_t size, image **out, int *file_bits, diagnostic *why);
+status image_decode(const void *bytes, size_t size, image_values values, image **out, int *file_bits, diagnostic *why);
 /* The same for a file below root (below_open of base/file.h). */
-status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);
+status image_read_below(const char *path, const char *root, image_values values, image **out, int *file_bits,
+                        diagnostic *why);

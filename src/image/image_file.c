@@ -56,6 +56,7 @@ static status write_as(const image_rows *rows, image_format format, FILE *stream
     case IMAGE_JPEG: return codec_jpeg_write(&shown, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:
+    case IMAGE_HDR:
     case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "use PNG, JPEG or PFM", "unknown image format");
@@ -128,7 +129,8 @@ bool image_is_png(const void *bytes, size_t size)
     return size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0;
 }
 
-/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM. */
+/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM; Radiance's
+ * #?. */
 static image_format format_of_bytes(const unsigned char *bytes, size_t size)
 {
     if (image_is_png(bytes, size))
@@ -137,32 +139,37 @@ static image_format format_of_bytes(const unsigned char *bytes, size_t size)
         return IMAGE_JPEG;
     if (size >= 2 && memcmp(bytes, "BM", 2) == 0)
         return IMAGE_BMP;
+    if (size >= 2 && memcmp(bytes, "#?", 2) == 0)
+        return IMAGE_HDR;
     bool pfm = size >= 3 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') &&
                (bytes[2] == '\n' || bytes[2] == '\r' || bytes[2] == ' ');
     return pfm ? IMAGE_PFM : IMAGE_UNKNOWN;
 }
 
-static status decode(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
+static status decode(const unsigned char *bytes, size_t size, image_values values, image **out, int *bits,
+                     diagnostic *why)
 {
     switch (format_of_bytes(bytes, size)) {
-    case IMAGE_PNG: return codec_png_read(bytes, size, out, bits, why);
-    case IMAGE_JPEG: *bits = 8; return codec_jpeg_read(bytes, size, out, why);
+    case IMAGE_PNG: return codec_png_read(bytes, size, values, out, bits, why);
+    case IMAGE_JPEG: *bits = 8; return codec_jpeg_read(bytes, size, values, out, why);
     case IMAGE_PFM: *bits = 32; return codec_pfm_read(bytes, size, out, why);
-    case IMAGE_BMP: *bits = 8; return codec_bmp_read(bytes, size, out, why);
+    case IMAGE_BMP: return codec_bmp_read(bytes, size, values, out, bits, why);
+    case IMAGE_HDR: *bits = 32; return codec_hdr_read(bytes, size, out, why);
     case IMAGE_UNKNOWN: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "use a PNG, JPEG, PFM or 24-bit BMP file", "%s",
+    return diagnose(why, STATUS_BAD_INPUT, "use a " IMAGE_FORMATS " file", "%s",
                     size == 0 ? "the file is empty" : "unknown image format");
 }
 
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why)
 {
-    return image_read_below(path, NULL, out, file_bits, why);
+    return image_read_below(path, NULL, IMAGE_LIGHT, out, file_bits, why);
 }
 
 typedef struct decoding {
     const char *bytes;
     size_t size;
+    image_values values;
     image **out;
     int bits;
     diagnostic *why;
@@ -172,28 +179,28 @@ typedef struct decoding {
 static void decode_confined(void *of)
 {
     decoding *d = of;
-    d->code = decode((const unsigned char *)d->bytes, d->size, d->out, &d->bits, d->why);
+    d->code = decode((const unsigned char *)d->bytes, d->size, d->values, d->out, &d->bits, d->why);
 }
 
-status image_decode(const void *bytes, size_t size, image **out, int *file_bits, diagnostic *why)
+status image_decode(const void *bytes, size_t size, image_values values, image **out, int *file_bits, diagnostic *why)
 {
-    decoding d = {.bytes = bytes, .size = size, .out = out, .why = why};
+    decoding d = {.bytes = bytes, .size = size, .values = values, .out = out, .why = why};
     *out = NULL;
     codec_run_confined(decode_confined, &d);
     TRY(d.code);
-    (*out)->coded_bits = d.bits == 32 ? 0 : d.bits;
     if (file_bits)
         *file_bits = d.bits;
     return STATUS_OK;
 }
 
-status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why)
+status image_read_below(const char *path, const char *root, image_values values, image **out, int *file_bits,
+                        diagnostic *why)
 {
     char *bytes;
     size_t size;
     *out = NULL;
     TRY(file_read_below(path, root, FILE_BYTES_MAX, &bytes, &size, why));
-    const status code = image_decode(bytes, size, out, file_bits, why);
+    const status code = image_decode(bytes, size, values, out, file_bits, why);
     free(bytes);
     return locate_failure(why, path, code);
 }

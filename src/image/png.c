@@ -193,7 +193,9 @@ typedef struct png_reading {
     png_library library; /* first: libpng hands it back */
     unsigned char *raw;  /* one row, or the image if it is interlaced */
     image *img;
-    float *linear; /* sRGB decoding table */
+    image_values values;
+    png_space space;
+    codec_tables tables;
     int bits;
     status code; /* for errors not from libpng */
     diagnostic *why;
@@ -220,17 +222,25 @@ static void store_row(png_reading *job, const unsigned char *row, int y, size_t 
     float *pixel = job->img->pixel + 3 * first;
     for (size_t x = 0; x < (size_t)job->img->width; x++) {
         for (size_t channel = 0; channel < 3; channel++)
-            pixel[3 * x + channel] = job->linear[sample(job, row, channels * x + channel)];
+            pixel[3 * x + channel] = job->tables.of[channel][sample(job, row, channels * x + channel)];
         if (channels == 4)
             job->img->alpha[first + x] =
                 (float)((double)sample(job, row, 4 * x + 3) / (job->bits == 8 ? 255.0 : 65535.0));
     }
 }
 
+/* The space's tables borrow from its profile. Grey values have no primaries. */
+static bool read_space(png_reading *job)
+{
+    job->code = png_read_space(job->library.bytes, job->library.size, job->values, &job->space, job->why);
+    job->space.color.mixes &= (png_get_color_type(job->library.png, job->library.info) & PNG_COLOR_MASK_COLOR) != 0;
+    return job->code == STATUS_OK;
+}
+
 static bool allocate(png_reading *job, long long width, long long height, bool interlaced)
 {
-    job->code =
-        codec_begin(width, height, job->library.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
+    job->code = codec_begin(width, height, job->library.size, job->bits == 8 ? 255 : 65535,
+                            job->values == IMAGE_CODED ? NULL : &job->space.color, &job->img, &job->tables, job->why);
     if (job->code == STATUS_OK && png_get_channels(job->library.png, job->library.info) == 4)
         job->code = image_add_alpha(job->img, job->why);
     if (job->code != STATUS_OK)
@@ -252,6 +262,8 @@ static bool read_rows(png_reading *job)
     png_library_guard(&job->library, 8000000);
     png_set_keep_unknown_chunks(job->library.png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(job->library.png, job->library.info);
+    if (!read_space(job))
+        return false;
     normalize(job);
     int passes = png_set_interlace_handling(job->library.png);
     png_read_update_info(job->library.png, job->library.info);
@@ -274,7 +286,11 @@ static bool read_rows(png_reading *job)
         }
     }
     png_read_end(job->library.png, NULL); /* the remaining chunks must be valid as well */
-    return true;
+    codec_color_apply(&job->space.color, 1.0, job->img);
+    if (job->space.note[0])
+        image_note(job->img->note, "%s", job->space.note);
+    job->code = codec_orient(&job->img, job->space.orientation, job->why);
+    return job->code == STATUS_OK;
 }
 
 static void read_guarded(png_reading *job)
@@ -287,9 +303,10 @@ static void read_guarded(png_reading *job)
         job->code = STATUS_OK;
 }
 
-status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why)
+status codec_png_read(const unsigned char *bytes, size_t size, image_values values, image **out, int *bits,
+                      diagnostic *why)
 {
-    png_reading job = {.library = {.bytes = bytes, .size = size}, .why = why, .code = STATUS_FAILURE};
+    png_reading job = {.library = {.bytes = bytes, .size = size}, .values = values, .why = why, .code = STATUS_FAILURE};
     *out = NULL;
     if (!png_library_begin_read(&job.library))
         out_of_memory(why);
@@ -297,7 +314,8 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
         read_guarded(&job);
     png_destroy_read_struct(&job.library.png, &job.library.info, NULL);
     free(job.raw);
-    free(job.linear);
+    free(job.space.profile);
+    codec_tables_free(&job.tables);
     if (job.code != STATUS_OK) {
         image_destroy(job.img);
         return job.code;

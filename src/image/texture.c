@@ -5,10 +5,10 @@
 #include "base/budget.h"
 #include "base/cancel.h"
 #include "base/hash.h"
-#include "image/codec.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- memory ---- */
 
@@ -150,6 +150,11 @@ static status complete(texture *t, diagnostic *why)
     return cancel_check(why);
 }
 
+const char *texture_note(const texture *t)
+{
+    return t->note;
+}
+
 const texture *texture_covered(const texture *t)
 {
     return t->covered;
@@ -157,57 +162,45 @@ const texture *texture_covered(const texture *t)
 
 /* ---- creation ---- */
 
-static status check(const image *img, diagnostic *why)
+static status check_size(const image *img, diagnostic *why)
 {
-    if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX) {
+    if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
                         "a texture cannot have %d x %d texels", img->width, img->height);
-    }
-    const size_t width = (size_t)img->width, count = width * (size_t)img->height;
-    for (size_t i = 0; i < 3 * count; i++) {
-        if (cancel_asked_at(i))
-            return cancel_check(why);
-        if (!isfinite(img->pixel[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "use an image with finite values",
-                            "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
-                            i / 3 / width);
-    }
     return STATUS_OK;
 }
 
-/* The encoded value of a linear value; bytes is filled if coded_bits is 8. */
-static float restore(const codec_bytes *bytes, int coded_bits, float linear)
+/* Small negative values are noise: image_check_light. */
+static float not_negative(float value)
 {
-    return coded_bits == 8    ? (float)(codec_byte(bytes, linear) / 255.0)
-           : coded_bits == 16 ? (float)(codec_quantize(linear, 65535) / 65535.0)
-                              : linear;
+    return value < 0.0F ? 0.0F : value;
 }
 
 /* Copies the image to level 0, whose rows begin at the bottom. */
-static void copy_pixels(texture *t, const image *img, int coded_bits)
+static void copy_pixels(texture *t, const image *img)
 {
-    codec_bytes bytes;
-    if (coded_bits == 8)
-        codec_bytes_prepare(&bytes);
     const texture_level *to = &t->level[0];
     for (int y = 0; y < to->height && !cancel_asked(); y++) {
         const size_t first = (size_t)(to->height - 1 - y) * (size_t)to->width;
         const float *from = img->pixel + 3 * first;
         texel *row = to->texels + (size_t)y * (size_t)to->width;
         for (int x = 0; x < to->width; x++, from += 3) {
-            row[x] = (texel){.r = restore(&bytes, coded_bits, from[0]),
-                             .g = restore(&bytes, coded_bits, from[1]),
-                             .b = restore(&bytes, coded_bits, from[2]),
+            row[x] = (texel){.r = not_negative(from[0]),
+                             .g = not_negative(from[1]),
+                             .b = not_negative(from[2]),
                              .alpha = img->alpha ? img->alpha[first + (size_t)x] : 1.0F};
         }
     }
 }
 
-status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
-                      texture_filter filter, texture **out, diagnostic *why)
+status texture_create(const image *img, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter, texture **out,
+                      diagnostic *why)
 {
+    char note[IMAGE_NOTE_MAX];
     *out = NULL;
-    TRY(check(img, why));
+    memcpy(note, img->note, sizeof note);
+    TRY(check_size(img, why));
+    TRY(image_check_light(img, note, NULL, why));
     const uint64_t texels = (uint64_t)img->width * (uint64_t)img->height;
     TRY(memory_budget_check((filter == TEXTURE_TRILINEAR ? texels / 3 * 4 : texels) * sizeof(texel),
                             "use a smaller one", why, "a texture of %d x %d texels", img->width, img->height));
@@ -215,7 +208,8 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
     if (!t)
         return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
-    copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
+    memcpy(t->note, note, sizeof t->note);
+    copy_pixels(t, img);
     const status code = complete(t, why);
     if (code == STATUS_OK)
         *out = t;
@@ -224,13 +218,18 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
     return code;
 }
 
+static image_values values_of(texture_space space)
+{
+    return space == TEXTURE_LINEAR ? IMAGE_CODED : space == TEXTURE_GLTF ? IMAGE_SRGB : IMAGE_LIGHT;
+}
+
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why)
 {
     image *img;
     *out = NULL;
-    TRY(image_read_below(path, root, &img, NULL, why));
-    status code = texture_create(img, space, wrap_u, wrap_v, filter, out, why);
+    TRY(image_read_below(path, root, values_of(space), &img, NULL, why));
+    status code = texture_create(img, wrap_u, wrap_v, filter, out, why);
     if (code != STATUS_OK)
         diagnostic_locate(why, path, 0, 0);
     image_destroy(img);
@@ -242,8 +241,8 @@ status texture_decode(const void *bytes, size_t size, texture_space space, textu
 {
     image *img;
     *out = NULL;
-    TRY(image_decode(bytes, size, &img, NULL, why));
-    const status code = texture_create(img, space, wrap_u, wrap_v, filter, out, why);
+    TRY(image_decode(bytes, size, values_of(space), &img, NULL, why));
+    const status code = texture_create(img, wrap_u, wrap_v, filter, out, why);
     image_destroy(img);
     return code;
 }

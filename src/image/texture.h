@@ -11,10 +11,9 @@
 #include "image/image.h"
 #include <stdint.h>
 
-/* The meaning of the values in a PNG, JPEG or BMP file. image_read decodes all of them as sRGB: TEXTURE_SRGB keeps the
- * linear result; TEXTURE_LINEAR restores the file's own values (0 to 1), exactly for 8 or 16 bits if no alpha was
- * blended. Images that were never encoded (PFM, rendered) are used unchanged in both cases. */
-typedef enum texture_space { TEXTURE_SRGB, TEXTURE_LINEAR } texture_space;
+/* The meaning of the values in a file (image_values of image.h). TEXTURE_SRGB: colours, IMAGE_LIGHT. TEXTURE_LINEAR:
+ * data, IMAGE_CODED. TEXTURE_GLTF: colours of a glTF file, IMAGE_SRGB: it ignores what images say of their space. */
+typedef enum texture_space { TEXTURE_SRGB, TEXTURE_LINEAR, TEXTURE_GLTF } texture_space;
 
 /* Coordinates outside the unit square: repeat, mirror (period 2), or clamp to the edge. */
 typedef enum texture_wrap { TEXTURE_REPEAT, TEXTURE_MIRROR, TEXTURE_CLAMP } texture_wrap;
@@ -27,10 +26,10 @@ enum { TEXTURE_LEVELS_MAX = 17 }; /* sides of 2^16 = 65536 to 2^0 = 1 texels */
 
 typedef struct texture texture;
 
-/* The caller has the only reference. STATUS_BAD_INPUT for a pixel that is not finite or a size that image_create
- * refuses, STATUS_FAILURE if memory runs out. */
-status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
-                      texture_filter filter, texture **out, diagnostic *why);
+/* The caller has the only reference. The values are used as they are; small negative ones are 0, with a note.
+ * STATUS_BAD_INPUT for an image that image_check_light or image_create refuses, STATUS_FAILURE if memory runs out. */
+status texture_create(const image *img, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter, texture **out,
+                      diagnostic *why);
 
 /* The same from a file below root (below_open of base/file.h; NULL: anywhere): with image_read's diagnostics and
  * limits. */
@@ -40,6 +39,9 @@ status texture_read_below(const char *path, const char *root, texture_space spac
 /* The same from the bytes of an image file; the diagnostic has no place. */
 status texture_decode(const void *bytes, size_t size, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why);
+
+/* What reading the file ignored or changed, "" for nothing; valid as long as t. A packed texture has none. */
+const char *texture_note(const texture *t);
 
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */

@@ -27,6 +27,7 @@ struct texture {
     texel *block;
     size_t block_bytes;
     struct texture *covered; /* see texture_covered; NULL: none */
-    bool multiplied;         /* a covered texture: colours are multiplied by alpha */
-    size_t owners;           /* modified atomically */
+    char note[IMAGE_NOTE_MAX];
+    bool multiplied; /* a covered texture: colours are multiplied by alpha */
+    size_t owners;   /* modified atomically */
 };

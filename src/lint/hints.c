@@ -367,13 +367,28 @@ static void hint_at_tone(const scene *s, const note_sink *taker)
         note_report(taker, "camera", "white", "set camera.tone to reinhard", "this tone curve has no white point");
 }
 
-/* Notes what mesh files name or have, and their meshes lack. */
+static void hint_at_image(const char *object, const char *parameter, const char *note, const note_sink *taker)
+{
+    if (*note)
+        note_report(taker, object, parameter, NULL, "%s", note);
+}
+
+/* Notes what mesh files name or have, and their meshes lack; and what reading images ignored or changed. */
 static void hint_at_files(const scene *s, const note_sink *taker)
 {
+    if (s->background.kind == BACKGROUND_IMAGE && s->background.img)
+        hint_at_image("background", "image", s->background.img->note, taker);
+    for (size_t i = 0; i < s->texture_count; i++)
+        if (s->textures[i].data)
+            hint_at_image(s->textures[i].name, "file", texture_note(s->textures[i].data), taker);
     for (size_t i = 0; i < s->mesh_count; i++) {
-        const char *note = face_materials_note(s->meshes[i].shading_materials);
-        if (*note)
-            note_report(taker, s->meshes[i].name, "file", NULL, "%s", note);
+        const face_materials *list = s->meshes[i].shading_materials;
+        hint_at_image(s->meshes[i].name, "file", face_materials_note(list), taker);
+        for (int k = 0; k < face_materials_count(list); k++) {
+            const texture *img = face_materials_at(list, k)->img;
+            if (img && (k == 0 || img != face_materials_at(list, k - 1)->img))
+                hint_at_image(s->meshes[i].name, "file", texture_note(img), taker);
+        }
     }
 }
 

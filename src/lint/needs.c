@@ -94,6 +94,7 @@ static const needs_row rows[] = {
 
     FACT(BACKGROUND, "kind", flat_sky),
     NEEDS_SET(BACKGROUND, "color", "background.kind!=image", "background.kind=uniform"),
+    NEEDS(BACKGROUND, "brightness", "background.kind=image"),
     NEEDS(BACKGROUND, "horizon", "background.kind=gradient|rain|cie"),
     NEEDS(BACKGROUND, "rain drops", "background.kind=rain"),
     NEEDS_SET(BACKGROUND, "drops", "background.rain>0", "background.rain=0.3"),

@@ -300,8 +300,7 @@ static status compare(const void *how, uint64_t *result)
 static status texturize(const void *how, uint64_t *result)
 {
     texture *t = NULL;
-    TRY(texture_create(((const coding *)how)->img, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &t,
-                       NULL));
+    TRY(texture_create(((const coding *)how)->img, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &t, NULL));
     *result = texture_hash(t, HASH_START);
     texture_release(t);
     return STATUS_OK;

@@ -278,7 +278,7 @@ sky "PFM with NaN"
     printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x08\0'
     head -c 28 /dev/zero
 } >sky.png
-sky "BMP of 8 bits"
+sky "BMP without a palette"
 {
     printf 'BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0'
     head -c 28 /dev/zero

@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = NULL;
     int bits = 0;
     diagnostic why = {.what = ""};
-    const status code = codec_png_read(data, size, &img, &bits, &why);
+    const status code = codec_png_read(data, size, IMAGE_LIGHT, &img, &bits, &why);
     must(code != STATUS_OK || bits == 8 || bits == 16);
     check_image(code, img, true, &why);
     const status found = image_png_text(data, size, "cuvette scene", 4096, &text, &why);

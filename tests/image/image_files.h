@@ -56,7 +56,7 @@ __attribute__((unused)) static int remove_folder(void **state)
     return 0;
 }
 
-static char *in_folder(const char *name)
+__attribute__((unused)) static char *in_folder(const char *name)
 {
     char *path = text_format("%s/%s", folder, name);
     assert_non_null(path);
@@ -68,7 +68,7 @@ typedef struct blob {
     size_t size;
 } blob;
 
-static blob get(const char *path)
+__attribute__((unused)) static blob get(const char *path)
 {
     blob b;
     assert_int_equal(file_read(path, SIZE_MAX, &b.bytes, &b.size, NULL), STATUS_OK);
@@ -102,7 +102,7 @@ __attribute__((unused)) static bool same_float(float a, float b)
 }
 
 /* A smooth image with some grain. */
-static image *make_image(int width, int height)
+__attribute__((unused)) static image *make_image(int width, int height)
 {
     image *img;
     uint32_t random = 12345;

@@ -321,7 +321,8 @@ static void decompression_bombs_are_refused(void **state)
 
 /* ---- JPEG of other kinds ---- */
 
-static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels, bool progressive, int subsampling)
+static void write_jpeg_as(const char *path, J_COLOR_SPACE space, int channels, bool progressive, int subsampling,
+                          J_COLOR_SPACE stored, bool adobe)
 {
     FILE *file = fopen(path, "wb");
     struct jpeg_compress_struct cinfo;
@@ -335,6 +336,10 @@ static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels,
     cinfo.input_components = channels;
     cinfo.in_color_space = space;
     jpeg_set_defaults(&cinfo);
+    if (stored != JCS_UNKNOWN) {
+        jpeg_set_colorspace(&cinfo, stored);
+        cinfo.write_Adobe_marker = adobe;
+    }
     jpeg_set_quality(&cinfo, 95, TRUE);
     cinfo.comp_info[0].h_samp_factor = cinfo.comp_info[0].v_samp_factor = subsampling;
     if (progressive)
@@ -350,6 +355,11 @@ static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels,
     jpeg_finish_compress(&cinfo);
     jpeg_destroy_compress(&cinfo);
     assert_int_equal(fclose(file), 0);
+}
+
+static void write_jpeg_kind(const char *path, J_COLOR_SPACE space, int channels, bool progressive, int subsampling)
+{
+    write_jpeg_as(path, space, channels, progressive, subsampling, JCS_UNKNOWN, false);
 }
 
 static void jpeg_of_other_kinds_is_read(void **state)
@@ -410,15 +420,54 @@ static void jpeg_with_a_false_size_is_refused(void **state)
     free(path);
 }
 
-static void cmyk_jpeg_is_refused(void **state)
+/* Without a profile R = (1 - C) (1 - K); Adobe's marker means that 1 - C is stored. All four channels are equal here. */
+static void cmyk_jpeg_is_converted(void **state)
 {
     (void)state;
-    char *path = in_folder("cmyk.jpg");
-    image *img;
-    diagnostic why = {0};
-    write_jpeg_kind(path, JCS_CMYK, 4, false, 1);
-    assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "neither grey nor RGB"));
+    static const struct {
+        J_COLOR_SPACE stored;
+        bool adobe;
+    } kinds[] = {{JCS_CMYK, true}, {JCS_CMYK, false}, {JCS_YCCK, true}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        char *path = in_folder("cmyk.jpg");
+        image *img;
+        write_jpeg_as(path, JCS_CMYK, 4, k == 1, 1, kinds[k].stored, kinds[k].adobe);
+        assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
+        assert_string_equal(img->note, "");
+        for (int i = 0; i < 40 * 30 * 3; i++) {
+            const double coded = (60 + i / 3 % 40 * 3 + i / 3 / 40) / 255.0, ink = kinds[k].adobe ? 1 - coded : coded;
+            assert_true(fabs(srgb_encode((double)img->pixel[i]) - (1 - ink) * (1 - ink)) < 8 / 255.0);
+        }
+        image_destroy(img);
+        free(path);
+    }
+}
+
+/* The frame header (SOF) declares what the library does not read: that is told, and not that the file is damaged. */
+static void unsupported_jpeg_is_refused_by_name(void **state)
+{
+    (void)state;
+    static const struct {
+        unsigned char process, precision;
+        const char *word;
+    } kinds[] = {{0xc1, 12, "has 12 bits per channel"}, {0xc3, 8, "lossless or hierarchical"}, {0xc5, 8, "(SOF 5)"}};
+    char *path = in_folder("kind.jpg");
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        write_jpeg_kind(path, JCS_RGB, 3, false, 1);
+        blob b = get(path);
+        size_t at = 0;
+        diagnostic why = {0};
+        image *img;
+        while (at + 9 < b.size && memcmp(b.bytes + at, "\xff\xc0", 2) != 0)
+            at++;
+        assert_true(at + 9 < b.size);
+        b.bytes[at + 1] = (char)kinds[k].process, b.bytes[at + 4] = (char)kinds[k].precision;
+        put(path, b.bytes, b.size);
+        free(b.bytes);
+        assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
+        if (!strstr(why.what, kinds[k].word) || strstr(why.what, "damaged"))
+            fail_msg("%s", why.what);
+    }
     free(path);
 }
 
@@ -539,7 +588,8 @@ int main(void)
         file_test(decompression_bombs_are_refused),
         file_test(jpeg_with_a_false_size_is_refused),
         file_test(jpeg_of_other_kinds_is_read),
-        file_test(cmyk_jpeg_is_refused),
+        file_test(cmyk_jpeg_is_converted),
+        file_test(unsupported_jpeg_is_refused_by_name),
         file_test(truncated_files_are_refused),
         file_test(corrupted_files_are_refused_or_read_whole),
         file_test(files_with_many_corruptions_are_refused_or_read_whole),

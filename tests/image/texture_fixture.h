@@ -46,7 +46,7 @@ static inline size_t texture_bytes(const texture *t)
 static inline texture *textured(const image *img, texture_wrap wrap, texture_filter filter)
 {
     texture *t;
-    assert_int_equal(texture_create(img, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
+    assert_int_equal(texture_create(img, wrap, wrap, filter, &t, NULL), STATUS_OK);
     return t;
 }
 

@@ -203,8 +203,6 @@ static void the_reference_image_is_kept_across_changes(void **state)
     image *a = image_of(""), *fine = decoded(*state, "/api/reference.png?bits=16"),
           *plain = decoded(*state, "/api/reference.png");
     image_comparison found;
-    assert_int_equal(fine->coded_bits, 16);
-    assert_int_equal(plain->coded_bits, 8);
     assert_int_equal(image_compare(a, fine, &found, NULL), STATUS_OK);
     assert_true(found.largest <= 0.51 / 65535);
     assert_int_equal(image_compare(a, plain, &found, NULL), STATUS_OK);

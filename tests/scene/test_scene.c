@@ -302,7 +302,7 @@ static void negative_and_infinite_skies_are_refused(void **state)
         if (is_bad) {
             diagnostic_text(&why, message, sizeof message);
             assert_memory_equal(message, "s.yaml:1:21: background.image: ", 31);
-            assert_non_null(strstr(message, "pixel 2,1 is "));
+            assert_non_null(strstr(message, "column 2, row 1 from the top"));
         }
         scene_destroy(s);
     }

@@ -51,7 +51,8 @@ vec3 sky_radiance(const background *sky, vec3 direction)
     case BACKGROUND_UNIFORM: return sky->color;
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, direction.y > 0.0 ? direction.y : 0.0);
-    case BACKGROUND_IMAGE: return sky->img ? sky_image_radiance(sky->img, direction) : sky->color;
+    case BACKGROUND_IMAGE:
+        return sky->img ? vec3_scale(sky_image_radiance(sky->img, direction), sky->brightness) : sky->color;
     case BACKGROUND_CIE:
         return direction.y > 0.0 ? vec3_scale(sky->color, cie_sky_relative(&sky->cie, direction)) : sky->horizon;
     }
@@ -93,7 +94,7 @@ vec3 sky_mean(const background *sky)
     case BACKGROUND_UNIFORM: return sky->color;
     case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, 0.25);
-    case BACKGROUND_IMAGE: return sky->img ? sky_image_mean(sky->img) : sky->color;
+    case BACKGROUND_IMAGE: return sky->img ? vec3_scale(sky_image_mean(sky->img), sky->brightness) : sky->color;
     case BACKGROUND_CIE: return mix(sky->horizon, vec3_scale(sky->color, sky->cie.mean), 0.5);
     }
     return sky->color;

@@ -160,6 +160,12 @@ static const texture *image_before(const mesh_import *imported, int slot, const 
     return NULL;
 }
 
+/* glTF 2.0, 5.19: what images say of their colour space is ignored. */
+static bool is_gltf(const char *path)
+{
+    return strcasestr(file_name_of(path), ".gltf") || strcasestr(file_name_of(path), ".glb");
+}
+
 /* Reads an image of a slot, if it has one, from a file or from inside the mesh file at mesh_path, or retains an earlier
  * one. */
 static status read_image(const mesh_import *imported, int slot, const imported_texture *t, const char *mesh_path,
@@ -177,14 +183,15 @@ static status read_image(const mesh_import *imported, int slot, const imported_t
         return STATUS_OK;
     }
     texture *img;
+    const texture_space space = is_gltf(mesh_path) ? TEXTURE_GLTF : TEXTURE_SRGB;
     const texture_wrap u = wraps[t->wrap_u], v = wraps[t->wrap_v];
     const texture_filter filter = filters[t->filter];
     if (t->path) {
-        TRY(texture_read_below(t->path, root, TEXTURE_SRGB, u, v, filter, &img, why));
+        TRY(texture_read_below(t->path, root, space, u, v, filter, &img, why));
     } else {
         const imported_image *inside = &imported->images[t->image - 1];
         TRY(locate_failure(why, mesh_path,
-                           texture_decode(inside->bytes, inside->size, TEXTURE_SRGB, u, v, filter, &img, why)));
+                           texture_decode(inside->bytes, inside->size, space, u, v, filter, &img, why)));
     }
     *out = img;
     return STATUS_OK;
@@ -283,8 +290,8 @@ static status load_sky(scene *s, diagnostic *why)
     if (!path)
         return out_of_memory(why);
     diagnostic bad = {.what = ""};
-    status code = image_read_below(path, s->limits.root, &sky->img, NULL, &bad);
-    if (code == STATUS_OK && (code = sky_check(sky->img, path, &bad)) != STATUS_OK) {
+    status code = image_read_below(path, s->limits.root, IMAGE_LIGHT, &sky->img, NULL, &bad);
+    if (code == STATUS_OK && (code = sky_take(sky, path, &bad)) != STATUS_OK) {
         image_destroy(sky->img);
         sky->img = NULL;
     }

@@ -171,29 +171,42 @@ static status check_camera(const scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-status sky_check(const image *sky, const char *path, diagnostic *bad)
+static status check_sky_brightness(const background *sky, diagnostic *why)
 {
-    for (int y = 0; y < sky->height; y++) {
-        TRY(cancel_check(bad));
-        for (int x = 0; x < sky->width; x++) {
-            const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
-            for (int channel = 0; channel < 3; channel++) {
-                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX))
-                    return diagnose_at(bad, path, STATUS_BAD_INPUT, "scale the image to 0..65536",
-                                       "pixel %d,%d is %g in channel %d; the radiance of the sky must be in 0..65536",
-                                       x, y, (double)pixel[channel], channel);
-            }
-        }
-    }
-    return STATUS_OK;
+    const double radiance = sky->brightness * (double)sky->brightest, most = (double)SCENE_SKY_MAX;
+    char remedy[160];
+    if (!(radiance > most))
+        return STATUS_OK;
+    size_t at = 0;
+    while (sky->img->pixel[at] < sky->brightest)
+        at++;
+    snprintf(remedy, sizeof remedy,
+             "set background.brightness to at most %.2g, or replace the image's sun by a light of kind sun",
+             0.95 * most / (double)sky->brightest);
+    return diagnose(why, STATUS_BAD_INPUT, remedy,
+                    "the radiance of the sky is %g at column %zu, row %zu from the top; it can be at most %g", radiance,
+                    at / 3 % (size_t)sky->img->width, at / 3 / (size_t)sky->img->width, most);
+}
+
+status sky_take(background *sky, const char *path, diagnostic *bad)
+{
+    image *img = sky->img;
+    status code = image_check_light(img, img->note, &sky->brightest, bad);
+    THEN(code, check_sky_brightness(sky, bad));
+    for (size_t i = 0; i < 3 * (size_t)img->width * (size_t)img->height; i++)
+        img->pixel[i] = img->pixel[i] < 0.0F ? 0.0F : img->pixel[i];
+    return locate_failure(bad, path, code);
 }
 
 static status check_background(const scene *s, diagnostic *why)
 {
-    if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
-        return diagnose(why, STATUS_BAD_INPUT, "set background.image to a PNG, JPEG, PFM or 24-bit BMP file",
+    const background *sky = &s->background;
+    if (sky->kind != BACKGROUND_IMAGE)
+        return STATUS_OK;
+    if (!sky->image_path[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set background.image to a " IMAGE_FORMATS " file",
                         "the background is an image, but no file is given");
-    return STATUS_OK;
+    return sky->img ? check_sky_brightness(sky, why) : STATUS_OK;
 }
 
 static status check_mesh(const mesh_entry *m, diagnostic *why)

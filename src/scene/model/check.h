@@ -1,9 +1,9 @@
 /* The parts of scene_check for one object, so that a reader can locate an error in a file. Pure. */
 #pragma once
 
-#include "image/image.h"
 #include "scene/model/names.h"
 #include "scene/model/params.h"
+#include "scene/model/view_settings.h"
 
 /* Fails if an object of the scene has that name. */
 status check_name_is_free(const scene *s, const char *name, diagnostic *why);
@@ -14,6 +14,6 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 /* Fails if the scene has too many objects of a kind, or primitives. */
 status check_limits(const scene *s, diagnostic *why);
 
-/* Fails if an image cannot be a sky: a radiance is negative, not a number, or above SCENE_SKY_MAX. path: for the
- * diagnostic. */
-status sky_check(const image *sky, const char *path, diagnostic *bad);
+/* Checks the image of a sky that was just read (image_check_light) and its brightness, replaces small negative values by
+ * 0, notes that, and sets sky->brightest. path: for the diagnostic. */
+status sky_take(background *sky, const char *path, diagnostic *bad);

@@ -281,8 +281,8 @@ static const param table[] = {
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below, and of a CIE sky below the horizon"),
     {PARAM_BACKGROUND, "image", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to image", NULL,
-     OF(background, image_path)},
+     IMAGE_FORMATS " file, relative to the scene file; sets kind to image", NULL, OF(background, image_path)},
+    REAL(PARAM_BACKGROUND, background, brightness, "", 0, BRIGHT, "1", "factor of the radiance of the image"),
     REAL(PARAM_BACKGROUND, background, rain, "", 0, BRIGHT, "0.3",
          "brightness of the rain: its radiance if drops scattered sunlight evenly in all directions"),
     ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
@@ -371,14 +371,13 @@ static const param table[] = {
      .offset = offsetof(mesh_entry, slime.threads), .performance_only = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file; its path is relative to the scene file's folder", NULL,
-     OF(texture_entry, path)},
+     IMAGE_FORMATS " file; its path is relative to the scene file's folder", NULL, OF(texture_entry, path)},
     CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
            "nearest texel; bilinear, of four texels; or trilinear, of two mipmap levels"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat", "horizontal wrap mode"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_v, wrap_words, "repeat", "vertical wrap mode"),
     CHOICE(PARAM_TEXTURE, texture_entry, space, space_words, "srgb",
-           "values of a PNG, JPEG or BMP file: sRGB-encoded or linear"),
+           "values of a PNG, JPEG or BMP file: colours, by its colour space or sRGB; or linear, the numbers in it"),
 
     {PARAM_DATA, "file", PARAM_PATH, "", 0, 0, false, "",
      "file of optical data by wavelength: of refractiveindex.info (.yml), a glass catalogue (.agf), or a table of "

@@ -20,7 +20,7 @@ typedef enum analyser_kind {
     ANALYSER_CIRCULAR_LEFT,
     ANALYSER_CIRCULAR_RIGHT
 } analyser_kind;
-/* Maximum value of a background image: below the film's limit, and above the largest half float, 65504. */
+/* Maximum radiance of a background image times its brightness: below the film's limit, and above the largest half float, 65504. */
 #define SCENE_SKY_MAX 65536.0F
 
 /* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
@@ -50,6 +50,8 @@ typedef struct background {
     char *image_path; /* equirectangular sky; "" for none; relative to the scene file */
     long image_line, image_column; /* where the scene file names the image; 0 if it does not */
     image *img;                    /* owned; NULL until loaded by scene_load */
+    float brightest;               /* largest value of img, set by sky_take */
+    double brightness;             /* factor of img's radiance */
     vec3 ambient;                  /* I_a of Phong's equation, linear RGB */
     double ior;                    /* index of the surroundings of all solids, if medium is MEDIUM_IOR */
     int64_t medium;                /* see scene/model/medium.h */

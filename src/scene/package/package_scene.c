@@ -240,14 +240,12 @@ status package_put_scene(pack_writer *to, const scene *s, const char *text, diag
 
 static status get_sky(pack_reader *from, background *sky, diagnostic *why)
 {
-    image *img;
-    TRY(image_unpack(from, &img, why));
-    if (sky_check(img, "", NULL) != STATUS_OK) {
-        image_destroy(img);
-        return pack_damaged(why, "the radiance of the sky");
-    }
-    sky->img = img;
-    return STATUS_OK;
+    TRY(image_unpack(from, &sky->img, why));
+    if (sky_take(sky, "", NULL) == STATUS_OK)
+        return STATUS_OK;
+    image_destroy(sky->img);
+    sky->img = NULL;
+    return pack_damaged(why, "the radiance of the sky");
 }
 
 /* Whether `data` is a valid value: none, follows, or an earlier entry. */

@@ -54,7 +54,7 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
     /* The JSON file is written last: without it the image is ignored. */
     if (code == STATUS_OK && access(facts, F_OK) == 0 && access(img, F_OK) == 0) {
         code = load_facts(facts, root, out, &pixels, why);
-        THEN(code, image_read_below(img, root, &out->img, NULL, why));
+        THEN(code, image_read_below(img, root, IMAGE_LIGHT, &out->img, NULL, why));
         if (code == STATUS_OK && pixel_hash(out->img) != pixels) {
             reference_release(out);
             code = damaged(img, why);

@@ -379,8 +379,10 @@ static void share_loaded(scene *s, const scene *loaded)
             optical_data_retain(s->data[i].data);
         }
     scene_follow_data(s);
-    if (!s->background.img && loaded->background.img)
+    if (!s->background.img && loaded->background.img) {
         s->background.img = image_retain(loaded->background.img);
+        s->background.brightest = loaded->background.brightest;
+    }
     scene_retain_meshes(s, loaded);
 }
 

@@ -48,9 +48,8 @@ static const texture *white_with(const texture_entry *like, int width, int heigh
             img->alpha[(height - 1 - y) * width + x] = alpha[y * width + x];
     for (int i = 0; i < 3 * width * height; i++)
         img->pixel[i] = 1.0F;
-    assert_int_equal(
-        texture_create(img, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, (texture_filter)like->filter, &t, NULL),
-        STATUS_OK);
+    assert_int_equal(texture_create(img, TEXTURE_CLAMP, TEXTURE_CLAMP, (texture_filter)like->filter, &t, NULL),
+                     STATUS_OK);
     image_destroy(img);
     return t;
 }

@@ -75,7 +75,7 @@ static void each_texel_of_an_image_sky_has_its_direction(void **state)
 {
     (void)state;
     image *img = numbered();
-    const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
+    const background sky = {.kind = BACKGROUND_IMAGE, .img = img, .brightness = 1.0};
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             /* the middle column is +z, the right half +x, the top row straight up */
@@ -92,7 +92,7 @@ static void an_image_wraps_around_and_ends_at_the_poles(void **state)
 {
     (void)state;
     image *img = numbered();
-    const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
+    const background sky = {.kind = BACKGROUND_IMAGE, .img = img, .brightness = 1.0};
     const double texel = 360.0 / WIDTH;
     for (int k = -4; k <= 4; k++) { /* across the seam from column 7 to column 0 */
         const double share = 0.5 + k / 8.0;
@@ -131,7 +131,7 @@ static void the_mean_is_weighted_by_solid_angle(void **state)
     const vec3 seen = mean_by_quadrature(&rising, 200);
     assert_near(seen.x, 0.25, 1e-4);
     image *img = numbered();
-    const background panorama = {.kind = BACKGROUND_IMAGE, .img = img};
+    const background panorama = {.kind = BACKGROUND_IMAGE, .img = img, .brightness = 1.0};
     const vec3 mean = sky_mean(&panorama), close = mean_by_quadrature(&panorama, 400);
     assert_near(mean.x, 3.5, 1e-12);
     assert_near(mean.y, 1.5, 1e-12); /* symmetric rows */
@@ -154,7 +154,7 @@ static void the_mean_of_images_with_one_and_two_rows(void **state)
         for (int y = 0; y < height; y++)
             for (int c = 0; c < 3; c++)
                 img->pixel[y * 3 + c] = c == 1 ? (float)y : 2.0f;
-        const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
+        const background sky = {.kind = BACKGROUND_IMAGE, .img = img, .brightness = 1.0};
         expect_radiance(sky_mean(&sky), 2.0, 0.5 * (height - 1), 2.0);
         image_destroy(img);
     }

@@ -276,8 +276,7 @@ static const texture *ramp(void)
             pixel[2] = 0.0F;
         }
     }
-    assert_int_equal(texture_create(img, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL),
-                     STATUS_OK);
+    assert_int_equal(texture_create(img, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL), STATUS_OK);
     image_destroy(img);
     return t;
 }
