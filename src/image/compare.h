@@ -9,8 +9,8 @@
 typedef struct image_comparison {
     double mse;     /* mean squared difference of the encoded channels, 0..1 */
     double psnr_db; /* 10 log10(1 / mse), INFINITY if mse is 0 */
-    double ssim;    /* mean structural similarity of the luma, -1..1, 1 for equal images: compare_ssim.c */
-    double flip;    /* mean FLIP error at 67.02 pixels per degree, 0..1, 0 for equal images: compare_flip.c */
+    double ssim;    /* mean structural similarity of the luma, -1..1, 1 for equal images: compare_parts.c */
+    double flip;    /* mean FLIP error at 67.02 pixels per degree, 0..1, 0 for equal images: compare_parts.c */
     double largest; /* largest absolute difference of an encoded channel, 0..1 */
     double differing_fraction; /* fraction of pixels whose 8-bit encodings differ in a channel, 0..1 */
     int largest_x, largest_y;  /* position of the first maximum, rows from the top; 0, 0 for equal images */

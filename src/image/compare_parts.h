@@ -1,4 +1,4 @@
-/* The measures of compare.h that use neighbourhoods, one file each, and the convolution that they use. Their images
+/* The measures of compare.h that use neighbourhoods, and the convolution that they use. Their images
  * have the same size and no channel is NaN. Ownership: everything is the caller's. Errors: STATUS_FAILURE without
  * memory. */
 #pragma once
@@ -10,8 +10,6 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
 
 /* Writes the FLIP error of each pixel, 0..1, to errors, width * height values. */
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why);
-
-/* ---- convolve.c ---- */
 
 /* Convolution of a plane of doubles with separable filters: along the rows, then along the columns. Border values are
  * repeated outside the plane. Pure; cannot fail. Planes are the caller's, width * height values, rows from the top. */

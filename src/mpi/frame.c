@@ -6,7 +6,6 @@
 #include "job/job.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
-#include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
 #include "render/frame/renderer.h"
 #include "scene/model/scene.h"

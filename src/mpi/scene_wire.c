@@ -1,5 +1,5 @@
 /* Broadcasts a package in parts. */
-#include "mpi/scene_wire.h"
+#include "mpi/frame.h"
 #include "scene/package/package.h"
 
 #include <mpi.h>

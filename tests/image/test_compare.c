@@ -91,7 +91,7 @@ static void assert_near(double value, double expected, double within)
 /* Sources of the numbers, all computed in double precision from the formulas above, encoded by IEC 61966-2-1. mse,
  * psnr, largest, share: NumPy 1.24.2, array expressions. ssim: scikit-image 0.19.3, structural_similarity(luma a, luma
  * b, gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=1); where a side is under 11, which it
- * refuses, NumPy by the definition in compare_ssim.c, window by window, with central moments. The two agree to 1e-12
+ * refuses, NumPy by the definition in compare_parts.c, window by window, with central moments. The two agree to 1e-12
  * where both are available. flip: the authors' Python implementation (github.com/NVlabs/flip, python/flip_api.py at
  * 313517b, compute_ldrflip), float64 in place of float32, and for its cv.filter2D SciPy 1.10.1's
  * ndimage.correlate(mode='nearest'), both explicit two-dimensional sums. */

@@ -1,14 +1,135 @@
-/* FLIP, the difference perceived by an observer who alternates between two images: Andersson, Nilsson, Akenine-Moller,
- * Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer
- * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. The observer is
- * 0.7 m away from a display that is 0.7 m and 3840 pixels wide: 67.02 pixels per degree. The filters are sums of
- * separable ones, applied along rows and columns; border pixels are repeated outside. */
+/* The measures of compare.h that use neighbourhoods: structural similarity and FLIP, and their convolution. */
 #include "image/compare_parts.h"
 
 #include "base/cancel.h"
 #include "base/elementary.h"
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* ==== convolution with separable filters ==== */
+
+#define E 2.7182818284590452
+
+convolve_taps convolve_gaussian(int count, double sigma)
+{
+    convolve_taps taps = {.count = count, .before = (count - 1) / 2};
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        double x = i - (count - 1) / 2.0;
+        taps.weight[i] = elementary_pow(E, -x * x / (2.0 * sigma * sigma));
+        sum += taps.weight[i];
+    }
+    for (int i = 0; i < count; i++)
+        taps.weight[i] /= sum;
+    return taps;
+}
+
+static int within(int i, int count)
+{
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+/* out += weight * shifted row, with repeated border values. */
+static void add_shifted_row(const double *restrict row, int width, int shift, double weight, double *restrict out)
+{
+    int first = shift < 0 ? within(-shift, width + 1) : 0;
+    int last = shift > 0 ? within(width - shift, width + 1) : width;
+    for (int x = 0; x < first; x++)
+        out[x] += weight * row[0];
+    for (int x = first; x < last; x++)
+        out[x] += weight * row[x + shift];
+    for (int x = last; x < width; x++)
+        out[x] += weight * row[width - 1];
+}
+
+void convolve_add(const double *plane, int width, int height, const convolve_taps *across, const convolve_taps *down,
+                  double scale, double *scratch, double *out)
+{
+    size_t stride = (size_t)width;
+    for (int y = 0; y < height && !cancel_asked(); y++) {
+        memset(scratch + (size_t)y * stride, 0, stride * sizeof *scratch);
+        for (int i = 0; i < across->count; i++)
+            add_shifted_row(plane + (size_t)y * stride, width, i - across->before, across->weight[i],
+                            scratch + (size_t)y * stride);
+    }
+    for (int y = 0; y < height && !cancel_asked(); y++) {
+        for (int i = 0; i < down->count; i++) {
+            const double *row = scratch + (size_t)within(y + i - down->before, height) * stride;
+            add_shifted_row(row, width, 0, scale * down->weight[i], out + (size_t)y * stride);
+        }
+    }
+}
+
+/* ==== structural similarity ==== */
+
+/* Structural similarity: Wang, Bovik, Sheikh, Simoncelli, Image Quality Assessment: From Error Visibility to Structural
+ * Similarity, IEEE Transactions on Image Processing 13(4), 2004: eq. 13 with the statistics of eqs. 14 to 16 under
+ * their 11 x 11 Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1, and the mean of eq. 17 over all windows inside the
+ * image. Along a side shorter than 11 pixels the window is as long as that side, with a centred Gaussian of sum 1. */
+
+enum { WINDOW = 11, MEAN_A = 0, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, SUMS };
+
+/* A plane per windowed sum, and two scratch planes. */
+typedef struct statistics {
+    int width, height;
+    size_t count;
+    double *sums[SUMS], *terms, *scratch;
+} statistics;
+
+static void gather(statistics *s, const double *a, const double *b, const convolve_taps *across,
+                   const convolve_taps *down)
+{
+    const double *const factors[SUMS][2] = {{a, NULL}, {b, NULL}, {a, a}, {b, b}, {a, b}};
+    for (int sum = 0; sum < SUMS; sum++) {
+        const double *first = factors[sum][0], *second = factors[sum][1];
+        for (size_t i = 0; i < s->count && !cancel_asked_at(i); i++)
+            s->terms[i] = second ? first[i] * second[i] : first[i];
+        convolve_add(s->terms, s->width, s->height, across, down, 1.0, s->scratch, s->sums[sum]);
+    }
+}
+
+/* Eq. 13 for one window. */
+static double similarity(const statistics *s, size_t at)
+{
+    const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+    double a = s->sums[MEAN_A][at], b = s->sums[MEAN_B][at];
+    double variance_a = s->sums[SQUARE_A][at] - a * a, variance_b = s->sums[SQUARE_B][at] - b * b;
+    double covariance = s->sums[PRODUCT][at] - a * b;
+    return (2 * a * b + c1) * (2 * covariance + c2) / ((a * a + b * b + c1) * (variance_a + variance_b + c2));
+}
+
+status compare_ssim(const double *a, const double *b, int width, int height, double *mean, diagnostic *why)
+{
+    statistics s = {.width = width, .height = height, .count = (size_t)width * (size_t)height};
+    double *planes = calloc(s.count, (SUMS + 2) * sizeof *planes);
+    if (!planes)
+        return diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory for the structural similarity");
+    for (int sum = 0; sum < SUMS; sum++)
+        s.sums[sum] = planes + (size_t)sum * s.count;
+    s.terms = planes + SUMS * s.count;
+    s.scratch = s.terms + s.count;
+    convolve_taps across = convolve_gaussian(width < WINDOW ? width : WINDOW, 1.5);
+    convolve_taps down = convolve_gaussian(height < WINDOW ? height : WINDOW, 1.5);
+    gather(&s, a, b, &across, &down);
+    int columns = width - across.count + 1, rows = height - down.count + 1;
+    double sum = 0.0;
+    for (int y = 0; y < rows && !cancel_asked(); y++)
+        for (int x = 0; x < columns; x++)
+            sum += similarity(&s, (size_t)(y + down.before) * (size_t)width + (size_t)(x + across.before));
+    *mean = sum / ((double)rows * columns);
+    free(planes);
+    return cancel_check(why);
+}
+
+/* ==== FLIP ==== */
+
+/* FLIP, the difference perceived by an observer who alternates between two images: Andersson, Nilsson, Akenine-Moller,
+ * Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer
+ * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. The observer is
+ * 0.7 m away from a display that is 0.7 m and 3840 pixels wide: 67.02 pixels per degree. The filters are sums of
+ * separable ones, applied along rows and columns; border pixels are repeated outside. */
 
 /* ---- the colour space: section 4.1 ---- */
 
