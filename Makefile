@@ -37,6 +37,8 @@ build := build/$(config)$(clang:%=-%)
 endif
 
 PACKAGES := libpng zlib libjpeg hwloc yaml-0.1 jansson
+# Of OpenEXR only the library in C, without the C++ ones that its description for pkg-config names.
+OPENEXR := -lOpenEXRCore
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
 # Constants that are enumerators are exact as doubles; newer versions of clang warn about them.
 warnings += $(if $(clang),-Wno-enum-float-conversion)
@@ -67,8 +69,10 @@ $(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitiz
 version := $(shell awk '/^.define CUVETTE_VERSION_/ {printf "%s%s", dot, $$3; dot = "."}' src/cuvette.h)
 soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 # pkg-config runs at its first use, not when this file is read: `make setup all` installs the libraries first.
-pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
-pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
+pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)) \
+  $$(shell pkg-config --cflags-only-I OpenEXR))$(pkg_cflags)
+pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)) \
+  $$(shell pkg-config --libs-only-L OpenEXR) $(OPENEXR))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs jansson zlib) -lm)$(import_libs)
 # Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
 CFLAGS ?= -g$(if $(clang),dwarf-4)

@@ -27,7 +27,7 @@ wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/librarie
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
   $(filter-out -Wvla,$(warnings)) -Wno-enum-float-conversion -Wno-shorten-64-to-32 -Wno-pass-failed $(errors)
 wasm_scripts := $(addprefix src/wasm/,memory.js lab_worker.js tile_worker.js worker.js)
-wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a yaml.a jansson.a z.a)
+wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a OpenEXRCore.a yaml.a jansson.a z.a)
 
 .PHONY: wasm
 ## wasm: the laboratory as WebAssembly: build/wasm

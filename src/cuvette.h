@@ -253,10 +253,10 @@ typedef struct cuvette_triangles {
 CUVETTE_API cuvette_status cuvette_scene_add_triangles(cuvette_scene *scene, const char *name,
                                                        const cuvette_triangles *triangles, cuvette_diagnostic *why);
 
-/* Adds a texture: from a PNG, JPEG, BMP, PFM or Radiance HDR file (set NAME.file), or from the caller's linear RGB floats,
- * which are copied, row by row from the top (repeated, trilinear). A material or a solid uses it by its parameter
- * `texture`. Clones share a texture from an array, but written files do not contain it; setting one of its parameters
- * discards the array. */
+/* Adds a texture: from a PNG, JPEG, BMP, PFM, Radiance HDR or OpenEXR file (set NAME.file), or from the caller's linear
+ * RGB floats, which are copied, row by row from the top (repeated, trilinear). A material or a solid uses it by its
+ * parameter `texture`. Clones share a texture from an array, but written files do not contain it; setting one of its
+ * parameters discards the array. */
 CUVETTE_API cuvette_status cuvette_scene_add_texture(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const char *name, int width, int height,
                                                     const float *rgb, cuvette_diagnostic *why);
@@ -385,10 +385,10 @@ CUVETTE_API cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0,
                                              size_t stride, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1,
                                               unsigned char *srgb, size_t stride, cuvette_diagnostic *why);
-/* Writes the image in the format of the path's ending: .png (bits: 8 or 16 per channel), .jpg, .pfm (linear floats);
- * "-" is a PNG on standard output. The file is written completely or not at all. A PNG carries the scene as it was
- * rendered, so that cuvette_scene_read and the program open it, unless the scene names files, is too large
- * (cuvette-scene(5)) or has slimes that hands grabbed. */
+/* Writes the image in the format of the path's ending: .png (bits: 8 or 16 per channel), .jpg, .pfm, .exr (linear
+ * floats); "-" is a PNG on standard output. The file is written completely or not at all. PNG and OpenEXR carry the
+ * scene as it was rendered, so that cuvette_scene_read and the program open it, unless the scene names files, is too
+ * large (cuvette-scene(5)) or has slimes that hands grabbed. */
 CUVETTE_API cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits,
                                                cuvette_diagnostic *why);
 
@@ -697,7 +697,7 @@ CUVETTE_API cuvette_status cuvette_scene_curve(const cuvette_scene *scene, const
 
 typedef struct cuvette_image cuvette_image;
 
-/* Reads a PNG, JPEG, BMP, PFM or Radiance HDR file. */
+/* Reads a PNG, JPEG, BMP, PFM, Radiance HDR or OpenEXR file. */
 CUVETTE_API cuvette_status cuvette_image_read(const char *path, cuvette_image **out, cuvette_diagnostic *why);
 CUVETTE_API void cuvette_image_destroy(cuvette_image *image);
 /* Linear RGB, row by row from the top, valid until the image is destroyed; sets width and height. NULL for no image. */

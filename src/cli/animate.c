@@ -118,12 +118,12 @@ static status flush_stream(animation_job *f, diagnostic *why)
     return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the animation") : result;
 }
 
-static status write_image(animation_job *f, const char *path, const film *img, diagnostic *why)
+static status write_image(animation_job *f, const char *path, const render_result *rendered, diagnostic *why)
 {
-    if (path) /* a PNG also stores the scene, whose slimes are at the time of this frame */
-        return record_image(img, f->s, path, 8, why);
+    if (path) /* PNG and OpenEXR also store the scene, whose slimes are at the time of this frame */
+        return record_image(rendered, NULL, f->s, path, 8, why);
     image *frame = NULL;
-    status result = film_image(img, &frame, why);
+    status result = film_image(rendered->img, &frame, why);
     if (result == STATUS_OK)
         frame->tone = camera_tone(f->s);
     errno = 0;
@@ -137,7 +137,7 @@ static status render_frame(animation_job *f, const char *path, diagnostic *why)
     const render_options options = {.progress = show_progress, .context = f};
     job_account rendered;
     status ended = job_render(f->frame_job, f->s, &options, &rendered, why);
-    THEN(ended, write_image(f, path, rendered.result->img, why));
+    THEN(ended, write_image(f, path, rendered.result, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
                                  .frame = f->frame,

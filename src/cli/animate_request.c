@@ -71,9 +71,8 @@ static status parse_rate(const command_option *o, void *context, const char *val
 
 static const command_option options[] = {
     {"output", 'o', "PATTERN",
-     "write frames, .png, .jpg or .pfm, numbered from 0 by one %d or %05d in the name; or one .y4m or .apng file (-: "
-     ".y4m to "
-     "standard output)",
+     "write frames, " IMAGE_ENDINGS ", numbered from 0 by one %d or %05d in the name; or one .y4m or .apng file "
+     "(-: .y4m to standard output)",
      OPTION_FILLS(option_text, animate_request, output)},
     {"script", 0, "FILE", "read the hand script of all slimes from FILE",
      OPTION_FILLS(option_text, animate_request, script)},

@@ -16,7 +16,7 @@ typedef struct compare_request {
 } compare_request;
 
 static const command_option options[] = {
-    {"diff", 0, "FILE", "write the FLIP error map in false colour: .png, .jpg or .pfm",
+    {"diff", 0, "FILE", "write the FLIP error map in false colour: " IMAGE_ENDINGS,
      OPTION_FILLS(option_text, compare_request, map)},
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, compare_request, json)},
     OPTION_MEMORY,

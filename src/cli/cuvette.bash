@@ -82,13 +82,13 @@ _cuvette_value() # OPTION: completes its value; false for a flag
             *) _cuvette_files 'study' ;;
             esac
             ;;
-        animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m|apng' ;;
-        render) _cuvette_files 'png|jpg|jpeg|pfm|html' ;;
-        *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
+        animate) _cuvette_files 'png|jpg|jpeg|pfm|exr|y4m|apng' ;;
+        render) _cuvette_files 'png|jpg|jpeg|pfm|exr|html' ;;
+        *) _cuvette_files 'png|jpg|jpeg|pfm|exr' ;;
         esac
         ;;
     --rays | --time | --cut | --noise)
-        [[ ${COMP_WORDS[1]-} == @(fan|study) ]] || _cuvette_files 'png|pfm'
+        [[ ${COMP_WORDS[1]-} == @(fan|study) ]] || _cuvette_files 'png|pfm|exr'
         ;;
     --timeline) _cuvette_files 'json' ;;
     --script) _cuvette_files 'yaml|yml' ;;
@@ -220,7 +220,7 @@ _cuvette()
         if [[ $current == -* ]]; then
             _cuvette_words --diff --json --memory-limit --help --usage --version
         else
-            _cuvette_files 'png|jpg|jpeg|pfm|bmp|hdr'
+            _cuvette_files 'png|jpg|jpeg|pfm|exr|bmp|hdr'
         fi
         ;;
     realism)

@@ -139,13 +139,14 @@ static status check_image(const outputs *o, const named_file *file, bool is_map,
     image_format format = image_format_of(file->path);
     if (strcmp(file->path, "-") == 0)
         return refuse(file, why,
-                      is_map ? "give a file that ends in .png or .pfm" : "give a file that ends in .png, .jpg or .pfm",
+                      is_map ? "give a file that ends in .png, .pfm or .exr"
+                             : "give a file that ends in " IMAGE_ENDINGS,
                       "standard output has no image format");
-    if (is_map && format != IMAGE_PNG && format != IMAGE_PFM)
-        return refuse(file, why, "use .png for an image with a colour scale, .pfm for the numbers",
+    if (is_map && format != IMAGE_PNG && !image_format_is_float(format))
+        return refuse(file, why, "use .png for an image with a colour scale, .pfm or .exr for the numbers",
                       "unsupported format of a map");
     if (format == IMAGE_UNKNOWN)
-        return refuse(file, why, "use .png, .jpg or .pfm", "unknown image format");
+        return refuse(file, why, "use " IMAGE_ENDINGS, "unknown image format");
     if (!is_map && o->bits == 16 && format != IMAGE_PNG)
         return refuse(file, why, "remove --bits, or use .png", "only PNG supports 16 bits");
     return STATUS_OK;
@@ -163,6 +164,12 @@ static status check_not_read(const named_file *file, const scene *s, diagnostic 
     return STATUS_OK;
 }
 
+/* Whether a map goes into the OpenEXR file of the image, as a channel. */
+static bool joins_image(const outputs *o, const char *map)
+{
+    return map && o->img && image_format_of(o->img) == IMAGE_EXR && same_file(map, o->img);
+}
+
 static status check_file(const outputs *o, const named_file *files, size_t at, const scene *s, diagnostic *why)
 {
     enum { TIMELINE = 5 };
@@ -174,7 +181,7 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     TRY(check_folder(file, why));
     TRY(check_not_read(file, s, why));
     for (size_t i = 0; i < at; i++)
-        if (files[i].path && same_file(file->path, files[i].path))
+        if (files[i].path && same_file(file->path, files[i].path) && !joins_image(o, file->path))
             return refuse(file, why, "give another file", "two outputs have the same file");
     return STATUS_OK;
 }
@@ -270,17 +277,26 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
     return file_writer_end(&writer, write(content, writer.stream, why), why);
 }
 
-status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why)
+/* A map is written into a file of its own, or is a channel of the image. */
+static status write_map(const outputs *o, const char *path, const double *values, const film *f, const char *title,
+                        diagnostic *why)
 {
+    return path && values && !joins_image(o, path) ? record_map(values, f, title, path, why) : STATUS_OK;
+}
+
+status outputs_write(const outputs *o, const scene *s, const render_result *result, const record_more *more,
+                     diagnostic *why)
+{
+    render_result shown = *result; /* with the maps that join the image */
+    shown.pixel_rays = joins_image(o, o->rays) ? result->pixel_rays : NULL;
+    shown.pixel_ns = joins_image(o, o->time) ? result->pixel_ns : NULL;
+    shown.pixel_cut = joins_image(o, o->cut) ? result->pixel_cut : NULL;
     if (o->img && !outputs_is_page(o->img))
-        TRY(record_image(result->img, s, o->img, o->bits == 16 ? 16 : 8, why));
-    if (o->rays && result->pixel_rays)
-        TRY(record_map(result->pixel_rays, result->img, "rays per pixel", o->rays, why));
-    if (o->time && result->pixel_ns)
-        TRY(record_map(result->pixel_ns, result->img, "nanoseconds per pixel", o->time, why));
-    if (o->cut && result->pixel_cut)
-        TRY(record_map(result->pixel_cut, result->img, "fraction of cut light per pixel", o->cut, why));
-    if (o->noise && result->variance)
+        TRY(record_image(&shown, more, s, o->img, o->bits == 16 ? 16 : 8, why));
+    TRY(write_map(o, o->rays, result->pixel_rays, result->img, "rays per pixel", why));
+    TRY(write_map(o, o->time, result->pixel_ns, result->img, "nanoseconds per pixel", why));
+    TRY(write_map(o, o->cut, result->pixel_cut, result->img, "fraction of cut light per pixel", why));
+    if (o->noise && result->variance && !joins_image(o, o->noise))
         TRY(record_noise(result, o->noise, why));
     if (o->timeline && result->events)
         TRY(record_timeline(result, o->timeline, why));

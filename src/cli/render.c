@@ -97,7 +97,7 @@ static status parse_bits(const command_option *o, void *context, const char *val
 }
 
 static const command_option options[] = {
-    {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats); .html: a page with the rays",
+    {"output", 'o', "FILE", "write the image: .png, .jpg, .pfm or .exr (linear floats); .html: a page with the rays",
      OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
     OPTION_MEMORY,
@@ -108,18 +108,24 @@ static const command_option options[] = {
     {"live", 0, NULL, "put the laboratory into the page of -o: its scene can be turned and changed there",
      OPTION_FILLS(option_flag, render_request, live)},
     {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .store = parse_bits},
-    {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
+    {"rays", 0, "FILE", "write the ray count of each pixel: " IMAGE_MAP_ENDINGS,
      OPTION_FILLS(option_text, render_request, files.rays)},
-    {"time", 0, "FILE", "write the render time of each pixel in ns: .png with a colour scale, or .pfm",
+    {"time", 0, "FILE", "write the render time of each pixel in ns: " IMAGE_MAP_ENDINGS,
      OPTION_FILLS(option_text, render_request, files.time)},
-    {"cut", 0, "FILE", "write the fraction of each pixel's light that is cut: .png with a colour scale, or .pfm",
+    {"cut", 0, "FILE", "write the fraction of each pixel's light that is cut: " IMAGE_MAP_ENDINGS,
      OPTION_FILLS(option_text, render_request, files.cut)},
-    {"noise", 0, "FILE", "write the standard error of each pixel (path tracing): .png with a colour scale, or .pfm",
+    {"noise", 0, "FILE", "write the standard error of each pixel (path tracing): " IMAGE_MAP_ENDINGS,
      OPTION_FILLS(option_text, render_request, files.noise)},
     {"timeline", 0, "FILE", "write start, duration and thread of each tile: .json for chrome://tracing or Perfetto",
      OPTION_FILLS(option_text, render_request, files.timeline)},
     {"layers", 0, "PREFIX", "write the layers as PREFIX-LAYER.pfm; needs render.integrator=aov",
      OPTION_FILLS(option_text, render_request, files.layers)},
+    {"stokes", 0, NULL, "add the Stokes vectors to the .exr of -o, by three more frames; needs render.polarisation=on",
+     OPTION_FILLS(option_flag, render_request, files.stokes)},
+    {"bands", 0, "N",
+     "add the spectral radiance in N bands of wavelengths to the .exr of -o, by a frame for three bands; needs "
+     "render.spectrum=spectral",
+     OPTION_FILLS(option_integer, render_request, files.bands), .lowest = 1, .highest = OUTPUTS_BANDS_MAX},
     {"repeat", 0, "N", "render N times and report median, 95% interval and range of the times",
      OPTION_FILLS(option_integer, render_request, repeat), .lowest = 1, .highest = 1000000},
     {0},
@@ -144,9 +150,9 @@ static status check_request(void *context, diagnostic *why)
         TRY(load_laboratory(request, why));
     if (request->beams && files->img && outputs_is_page(files->img))
         return options_wrong("--beams", NULL, why, "remove it", "a page shows the beams anyway");
-    if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
+    if (request->beams && (!files->img || image_format_is_float(image_format_of(files->img))))
         return options_wrong("--beams", NULL, why, "add -o FILE.png or -o FILE.jpg",
-                             files->img ? "a PFM file holds the film, which has no beams" : "no image is written");
+                             files->img ? "this file holds the film, which has no beams" : "no image is written");
     if (files->img || files->rays || files->time || files->cut || files->noise || files->timeline || files->layers ||
         request->json)
         return STATUS_OK;
@@ -159,6 +165,7 @@ static status check_scene(void *context, const scene *s, diagnostic *why)
     const render_request *request = context;
     if (request->live)
         TRY(shared_scene_check(s, why));
+    TRY(more_frames_check(&request->files, s, why));
     return outputs_check(&request->files, s, why);
 }
 
@@ -243,7 +250,11 @@ static status draw_beams(const render_request *request, const job_account *f, jo
 static status write_files(const render_request *request, const job_account *f, job *frame_job, diagnostic *why)
 {
     const outputs *files = &request->files;
-    TRY(outputs_write(files, f->of, f->result, why));
+    more_frames more;
+    status written = more_frames_render(files, f->of, f->result->img, frame_job, &more, why);
+    THEN(written, outputs_write(files, f->of, f->result, &more.channels, why));
+    more_frames_release(&more);
+    TRY(written);
     if (files->img && outputs_is_page(files->img))
         TRY(render_page_write(&request->input, f, job_isa(frame_job), files->img, files->bits == 16 ? 16 : 8,
                               request->laboratory, why));
@@ -264,7 +275,7 @@ static status write_results(const render_request *request, const job_account *f,
     if (first == STATUS_INTERRUPTED) {
         outputs quick_files = request->files;
         quick_files.layers = NULL;
-        code = outputs_write(&quick_files, f->of, f->result, why);
+        code = outputs_write(&quick_files, f->of, f->result, NULL, why);
     }
     if (code == STATUS_OK && request->json)
         code = json_print(report_create(f, request->repeat > 0), why);
@@ -290,6 +301,12 @@ static void show_progress(void *context, double fraction)
     progress_draw(context, fraction);
 }
 
+/* An OpenEXR file has the layers, if there are any. */
+static bool holds_layers(const outputs *files, const scene *s)
+{
+    return files->img && image_format_of(files->img) == IMAGE_EXR && integrator_traits_of(&s->render)->layers;
+}
+
 static status render_and_write(const render_request *request, const scene *s, job *frame_job, diagnostic *why)
 {
     const outputs *files = &request->files;
@@ -298,7 +315,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
                                           .pixel_time = files->time,
                                           .pixel_cut = files->cut,
                                           .timeline = files->timeline,
-                                          .layers = files->layers,
+                                          .layers = files->layers || holds_layers(files, s),
                                           .usage = request->json,
                                           .progress = show_progress,
                                           .context = &line};

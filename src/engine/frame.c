@@ -71,7 +71,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "use 8 or 16", "unsupported bit depth %d", bits);
-    THEN(code, record_image(frame->account.result->img, frame->scene, path, bits, &inner));
+    THEN(code, record_image(frame->account.result, NULL, frame->scene, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 

@@ -1,4 +1,4 @@
-/* The file formats behind image.h: three that are written and read, and others that are only read; and what these have
+/* The file formats behind image.h: four that are written and read, and others that are only read; and what these have
  * in common. Writers write an image to a stream and leave stream errors to the caller that closes it; readers decode a
  * file in memory. Diagnostics lack the file name. Ownership: an image that was read is the caller's; nothing is
  * allocated unless the status is STATUS_OK. */
@@ -148,6 +148,8 @@ float *codec_decode_table(unsigned maximum);
 status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast, diagnostic *why);
 status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnostic *why);
 status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why);
+/* fast: larger. The file is made in memory, since its table of places precedes what it points to. */
+status codec_exr_write(const image_rows *rows, FILE *stream, bool fast, diagnostic *why);
 
 /* bits: see image_read. */
 status codec_png_read(const unsigned char *bytes, size_t size, image_values values, image **out, int *bits,
@@ -157,12 +159,17 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image_values valu
                       diagnostic *why);
 status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
 status codec_hdr_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+status codec_exr_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
+
+/* image_text_read for a file of one format. */
+status codec_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
+status codec_exr_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
 /* --- png_chunks.c --- */
 
-/* The orientation of a PNG file, by its chunk eXIf; and for IMAGE_LIGHT its colour space, by the chunks cICP, iCCP, sRGB, gAMA with cHRM, in this order
- * (PNG specification, 3rd edition, 4.3). *profile is memory that the colour space borrows from, for the caller to
- * free, or NULL. What cannot be applied is added to note, "" for nothing. */
+/* The orientation of a PNG file, by its chunk eXIf; and for IMAGE_LIGHT its colour space, by the chunks cICP, iCCP,
+ * sRGB, gAMA with cHRM, in this order (PNG specification, 3rd edition, 4.3). *profile is memory that the colour space
+ * borrows from, for the caller to free, or NULL. What cannot be applied is added to note, "" for nothing. */
 typedef struct png_space {
     codec_color color;
     int orientation;
@@ -189,3 +196,26 @@ size_t png_bands_compress(png_bands *b);
 /* Band `index` of those that png_bands_compress has just compressed, as a part of the zlib stream; false if zlib failed
  * or the work was cancelled. */
 bool png_bands_get(const png_bands *b, size_t index, const unsigned char **bytes, size_t *size);
+
+/* --- exr_colours.c --- */
+
+/* Chromaticities x and y (CIE 1931) of red, green, blue and white. */
+typedef struct exr_primaries {
+    double x[4], y[4];
+} exr_primaries;
+
+/* Chroma of an image of width x height pixels, at every second column and line: (R - Y) / Y and (B - Y) / Y. Ownership:
+ * create allocates, release frees. */
+typedef struct exr_chroma {
+    float *red, *blue; /* NULL: the image has no chroma */
+    int columns, lines;
+} exr_chroma;
+status exr_chroma_create(exr_chroma *c, int width, int height, diagnostic *why);
+void exr_chroma_release(exr_chroma *c);
+
+/* Turns the values of a file into our colours: chroma, if there is any, into RGB (luminance is in all three channels),
+ * linear RGB of these primaries into linear sRGB, and divides by alpha, which is clamped to 0..1 (alpha of 1 everywhere
+ * is removed; colours with alpha 0 stay). x, y: the image's first pixel in the image of which chroma is. NULL: the
+ * primaries of sRGB. STATUS_BAD_INPUT for a value that is not finite, and for primaries on one line. */
+status exr_colours_convert(image *img, const exr_primaries *primaries, const exr_chroma *chroma, int64_t x, int64_t y,
+                           diagnostic *why);

@@ -22,10 +22,7 @@ image_format image_format_of(const char *path)
         const char *ending;
         image_format format;
     } endings[] = {
-        {".png", IMAGE_PNG},
-        {".jpg", IMAGE_JPEG},
-        {".jpeg", IMAGE_JPEG},
-        {".pfm", IMAGE_PFM},
+        {".png", IMAGE_PNG}, {".jpg", IMAGE_JPEG}, {".jpeg", IMAGE_JPEG}, {".pfm", IMAGE_PFM}, {".exr", IMAGE_EXR},
     };
     size_t length = strlen(path);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
@@ -55,11 +52,12 @@ static status write_as(const image_rows *rows, image_format format, FILE *stream
     case IMAGE_PNG: return codec_png_write(&shown, stream, bits, fast || cancel_hurries(), why);
     case IMAGE_JPEG: return codec_jpeg_write(&shown, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
+    case IMAGE_EXR: return codec_exr_write(rows, stream, fast || cancel_hurries(), why);
     case IMAGE_BMP:
     case IMAGE_HDR:
     case IMAGE_UNKNOWN: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "use PNG, JPEG or PFM", "unknown image format");
+    return diagnose(why, STATUS_BAD_INPUT, "use PNG, JPEG, PFM or OpenEXR", "unknown image format");
 }
 
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
@@ -92,8 +90,7 @@ status image_write_rows(const image_rows *rows, const char *path, int bits, diag
 {
     image_format format = image_format_of(path);
     if (format == IMAGE_UNKNOWN)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm",
-                           "unknown image format");
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in " IMAGE_ENDINGS, "unknown image format");
     if (format == IMAGE_PNG && bits != 8 && bits != 16)
         return diagnose_at(why, path, STATUS_BAD_INPUT, "use 8 or 16", "a PNG image cannot have %d bits per channel",
                            bits);
@@ -116,6 +113,8 @@ void image_room(image_format format, double width, double height, double count, 
     const double pixels = width * height;
     if (format == IMAGE_PFM)
         disk_room_add(to, count, 12 * pixels, 12 * pixels + HEADERS_MOST);
+    else if (format == IMAGE_EXR)
+        disk_room_add(to, count, 12 * pixels / DEFLATE_MOST, 24.2 * pixels + HEADERS_MOST);
     else if (format == IMAGE_PNG)
         disk_room_add(to, count, 3 * pixels / DEFLATE_MOST, 3.01 * pixels + HEADERS_MOST);
     else
@@ -129,12 +128,19 @@ bool image_is_png(const void *bytes, size_t size)
     return size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0;
 }
 
-/* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM; Radiance's
- * #?. */
+bool image_holds_text(const void *bytes, size_t size)
+{
+    return image_is_png(bytes, size) || (size >= 4 && memcmp(bytes, "\x76\x2f\x31\x01", 4) == 0);
+}
+
+/* The formats' signatures: PNG specification 5.2; OpenEXR's magic number, 20000630; JPEG's SOI and the next marker;
+ * PFM's PF or Pf; BMP's BM; Radiance's #?. */
 static image_format format_of_bytes(const unsigned char *bytes, size_t size)
 {
     if (image_is_png(bytes, size))
         return IMAGE_PNG;
+    if (image_holds_text(bytes, size))
+        return IMAGE_EXR;
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
         return IMAGE_JPEG;
     if (size >= 2 && memcmp(bytes, "BM", 2) == 0)
@@ -155,6 +161,7 @@ static status decode(const unsigned char *bytes, size_t size, image_values value
     case IMAGE_PFM: *bits = 32; return codec_pfm_read(bytes, size, out, why);
     case IMAGE_BMP: return codec_bmp_read(bytes, size, values, out, bits, why);
     case IMAGE_HDR: *bits = 32; return codec_hdr_read(bytes, size, out, why);
+    case IMAGE_EXR: *bits = 32; return codec_exr_read(bytes, size, out, why);
     case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "use a " IMAGE_FORMATS " file", "%s",
@@ -203,4 +210,30 @@ status image_read_below(const char *path, const char *root, image_values values,
     const status code = image_decode(bytes, size, values, out, file_bits, why);
     free(bytes);
     return locate_failure(why, path, code);
+}
+
+/* ---- reading a text ---- */
+
+typedef struct text_job {
+    const void *bytes;
+    size_t size;
+    const char *keyword;
+    size_t limit;
+    char **text;
+    diagnostic *why;
+    status code;
+} text_job;
+
+static void read_text_confined(void *of)
+{
+    text_job *w = of;
+    w->code = (image_is_png(w->bytes, w->size) ? codec_png_text : codec_exr_text)(w->bytes, w->size, w->keyword,
+                                                                                  w->limit, w->text, w->why);
+}
+
+status image_text_read(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+{
+    text_job w = {bytes, size, keyword, limit, text, why, STATUS_OK};
+    codec_run_confined(read_text_confined, &w);
+    return w.code;
 }

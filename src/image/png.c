@@ -363,7 +363,7 @@ static bool has_keyword(const unsigned char *bytes, size_t size, const char *key
     return false;
 }
 
-static status read_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
+status codec_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
 {
     png_library job = {.bytes = bytes, .size = size};
     status code = STATUS_OK;
@@ -382,27 +382,4 @@ static status read_text(const void *bytes, size_t size, const char *keyword, siz
     }
     png_destroy_read_struct(&job.png, &job.info, NULL);
     return code;
-}
-
-typedef struct text_job {
-    const void *bytes;
-    size_t size;
-    const char *keyword;
-    size_t limit;
-    char **text;
-    diagnostic *why;
-    status code;
-} text_job;
-
-static void read_text_confined(void *of)
-{
-    text_job *w = of;
-    w->code = read_text(w->bytes, w->size, w->keyword, w->limit, w->text, w->why);
-}
-
-status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why)
-{
-    text_job w = {bytes, size, keyword, limit, text, why, STATUS_OK};
-    codec_run_confined(read_text_confined, &w);
-    return w.code;
 }

@@ -1,5 +1,5 @@
-/* How an image of 8 bits shows radiance: exposure and tone curve, before the sRGB encoding. Files of numbers (PFM, PNG
- * with 16 bits) keep the linear values, and so do films and comparisons. Pure; cannot fail. */
+/* How an image of 8 bits shows radiance: exposure and tone curve, before the sRGB encoding. Files of numbers (PFM,
+ * OpenEXR, PNG with 16 bits) keep the linear values, and so do films and comparisons. Pure; cannot fail. */
 #pragma once
 
 #include <stdbool.h>

@@ -385,6 +385,6 @@ bool not_of_file(const inert_case *c)
 bool of_floats(const inert_case *c)
 {
     const char *path = c->s->textures[c->at.index].path, *dot = strrchr(path, '.');
-    return dot && (strcasecmp(dot, ".pfm") == 0 || strcasecmp(dot, ".hdr") == 0) &&
+    return (image_format_is_float(image_format_of(path)) || (dot && strcasecmp(dot, ".hdr") == 0)) &&
            inert_say(c, "float-texture", "use a PNG or JPEG file", "the values of a file of floats are linear");
 }

@@ -125,6 +125,9 @@ static status refuse(const scene *s, const render_options *o, diagnostic *why)
     if (o->pixel_rays || o->pixel_time || o->pixel_cut || o->layers || o->timeline)
         return diagnose(why, STATUS_BAD_INPUT, "request only the image, or use one process",
                         "maps, layers and the timeline are not sent between ranks");
+    if (s->render.bands > 0)
+        return diagnose(why, STATUS_BAD_INPUT, "leave out --bands, or use one process",
+                        "bands of wavelengths are not sent between ranks");
     return STATUS_OK;
 }
 

@@ -312,7 +312,8 @@ static void images_are_whole_or_not_there(void **state)
     static const struct {
         const char *name;
         image_format format;
-    } kinds[] = {{"cancel.png", IMAGE_PNG}, {"cancel.jpg", IMAGE_JPEG}, {"cancel.pfm", IMAGE_PFM}};
+    } kinds[] = {
+        {"cancel.png", IMAGE_PNG}, {"cancel.jpg", IMAGE_JPEG}, {"cancel.pfm", IMAGE_PFM}, {"cancel.exr", IMAGE_EXR}};
     image *img = make_image();
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         char path[64];

@@ -246,7 +246,8 @@ sky "text"
 "$program" render "$scene" -o good.png --set render.width=40 --set render.height=20 >/dev/null
 "$program" render "$scene" -o good.jpg --set render.width=40 --set render.height=20 >/dev/null
 "$program" render "$scene" -o good.pfm --set render.width=40 --set render.height=20 >/dev/null
-for kind in png jpg pfm; do
+"$program" render "$scene" -o good.exr --set render.width=40 --set render.height=20 >/dev/null
+for kind in png jpg pfm exr; do
     head -c $(($(wc -c <good.$kind) / 2)) good.$kind >sky.png
     sky "truncated $kind"
 done

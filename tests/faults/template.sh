@@ -73,6 +73,7 @@ cuvette render rod.yaml -o a.png
 cuvette render rod.yaml -o b.png --set liquid.ior=1.4
 cuvette render rod.yaml -o a.jpg
 cuvette render rod.yaml -o a.pfm
+cuvette render rod.yaml -o a.exr
 cat >small.study <<'END'
 study: small
 scene: rod.yaml

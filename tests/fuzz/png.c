@@ -20,7 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const status code = codec_png_read(data, size, IMAGE_LIGHT, &img, &bits, &why);
     must(code != STATUS_OK || bits == 8 || bits == 16);
     check_image(code, img, true, &why);
-    const status found = image_png_text(data, size, "cuvette scene", 4096, &text, &why);
+    const status found = image_text_read(data, size, "cuvette scene", 4096, &text, &why);
     must(found == STATUS_OK ? !text || strlen(text) <= 4096 : found == STATUS_BAD_INPUT && !text && why.what[0]);
     free(text);
     return 0;

@@ -69,6 +69,7 @@ static void the_format_follows_the_file_name_extension(void **state)
     assert_int_equal(image_format_of("x.y.jpg"), IMAGE_JPEG);
     assert_int_equal(image_format_of("x.JpEg"), IMAGE_JPEG);
     assert_int_equal(image_format_of("x.pfm"), IMAGE_PFM);
+    assert_int_equal(image_format_of("x.exr"), IMAGE_EXR);
     assert_int_equal(image_format_of("-"), IMAGE_PNG);
     assert_int_equal(image_format_of("/dev/null"), IMAGE_PNG);
     static const char *const unknown[] = {"", "png", ".png", "x.gif", "x.png.gz", "x.png/", "x."};
@@ -167,6 +168,7 @@ static void the_same_image_gives_the_same_bytes(void **state)
     check_same_bytes("a.png", 16);
     check_same_bytes("a.jpg", 8);
     check_same_bytes("a.pfm", 8);
+    check_same_bytes("a.exr", 8);
 }
 
 static void png_has_an_srgb_chunk_and_no_time(void **state)
@@ -269,12 +271,12 @@ static void wrong_requests_are_refused(void **state)
 static void a_full_disk_keeps_the_old_image(void **state)
 {
     (void)state;
-    static const char *const names[] = {"full.png", "full.jpg", "full.pfm"};
+    static const char *const names[] = {"full.png", "full.jpg", "full.pfm", "full.exr"};
     image *small = make_image(5, 5), *large = make_image(200, 150);
     struct rlimit before, limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     os_signals_as_errors();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         char *path = in_folder(names[i]);
         diagnostic why = {0};
         assert_int_equal(image_write(small, path, 8, NULL), STATUS_OK);

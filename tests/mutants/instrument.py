@@ -52,7 +52,7 @@ __attribute__((destructor)) static void report(void)
 
 
 def arguments():
-    packages = ["libpng", "zlib", "libjpeg", "hwloc", "yaml-0.1", "jansson"]
+    packages = ["libpng", "zlib", "libjpeg", "OpenEXR", "hwloc", "yaml-0.1", "jansson"]
     flags = subprocess.run(["pkg-config", "--cflags", *packages], capture_output=True, text=True, check=True).stdout
     own = subprocess.run(["gcc", "-print-file-name=include"], capture_output=True, text=True, check=True).stdout.strip()
     own = own if not os.path.isdir("/usr/lib/clang/14/include") else "/usr/lib/clang/14/include"

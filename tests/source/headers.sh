@@ -5,7 +5,7 @@ set -uo pipefail
 cd "$(dirname "$0")/../.."
 cc=${CC:-gcc}
 case $cc in *clang*) cxx=${CXX:-clang++} ;; *) cxx=${CXX:-g++} ;; esac
-read -ra libraries <<<"$(pkg-config --cflags libpng libjpeg hwloc yaml-0.1 jansson libmicrohttpd 2>/dev/null)"
+read -ra libraries <<<"$(pkg-config --cflags libpng libjpeg OpenEXR hwloc yaml-0.1 jansson libmicrohttpd 2>/dev/null)"
 warnings=(-Wall -Wextra -Werror)
 case_number=0 failed=0
 

@@ -62,7 +62,7 @@ static void runs_record_the_provenance_of_rows(void **state)
     const json_t *sealed = json_object_get(json_object_get(run, "rows"), "rows");
     assert_int_equal(json_integer_value(json_object_get(sealed, "count")), 1);
     assert_int_equal(strlen(text_at(sealed, "checksum")), 16);
-    static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson"};
+    static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson", "OpenEXR"};
     for (size_t i = 0; i < sizeof libraries / sizeof libraries[0]; i++)
         assert_true(strchr(text_at(json_object_get(run, "libraries"), libraries[i]), '.') != NULL);
     assert_true(json_is_array(json_object_get(run, "disturbances")));

@@ -164,7 +164,7 @@ class Image:
 
     @described("cuvette_frame_write")
     def save(self, path: Path, bits: int = 8) -> None:
-        """Writes the image to a file: .png, .jpg or .pfm."""
+        """Writes the image to a file: .png, .jpg, .pfm or .exr."""
         call(lib.cuvette_frame_write, self._frame, encoded(path), bits)
 
     def _repr_png_(self) -> bytes:

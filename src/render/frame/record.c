@@ -11,36 +11,106 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- the image ---- */
+
 static void read_row(const void *context, int y, float *rgb)
 {
     const film *f = context;
     film_read(f, 0, y, f->width, y + 1, rgb, 0);
 }
 
-static status write_with_scene(image_rows rows, const scene *s, const char *path, int bits, diagnostic *why)
+static status write_with_scene(image_rows rows, const record_more *more, const scene *s, const char *path, int bits,
+                               diagnostic *why)
 {
+    const image_format format = image_format_of(path);
     shared_texts texts = {.count = 0};
-    if (s && image_format_of(path) == IMAGE_PNG)
+    image_text all[IMAGE_TEXTS_MAX];
+    if (s && (format == IMAGE_PNG || format == IMAGE_EXR))
         TRY(shared_texts_make(s, &texts, why));
     if (s)
         rows.tone = camera_tone(s);
-    rows.texts = texts.item;
-    rows.text_count = texts.count;
+    rows.texts = all;
+    for (int i = 0; i < texts.count; i++)
+        all[rows.text_count++] = texts.item[i];
+    for (int i = 0; more && i < more->text_count; i++)
+        all[rows.text_count++] = more->texts[i];
     const status code = image_write_rows(&rows, path, bits, why);
     free(texts.scene);
     return code;
 }
 
-status record_image(const film *f, const scene *s, const char *path, int bits, diagnostic *why)
+static float float_of(const void *of, size_t pixel)
 {
-    return write_with_scene((image_rows){.width = f->width, .height = f->height, .read = read_row, .of = f}, s, path,
-                            bits, why);
+    return ((const float *)of)[pixel];
+}
+
+static float float_of_three(const void *of, size_t pixel)
+{
+    return ((const float *)of)[3 * pixel];
+}
+
+static float double_of(const void *of, size_t pixel)
+{
+    return (float)((const double *)of)[pixel];
+}
+
+static float root_of_three(const void *of, size_t pixel)
+{
+    return (float)sqrt(((const double *)of)[3 * pixel]);
+}
+
+/* The names of what a result has beside the film, as other programs split them: layer, point, one letter. */
+static const char *const layer_names[LAYER_COUNT][3] = {
+    [LAYER_NORMAL] = {"normal.X", "normal.Y", "normal.Z"},
+    [LAYER_ALBEDO] = {"albedo.R", "albedo.G", "albedo.B"},
+    [LAYER_DEPTH] = {"depth.Z"},
+    [LAYER_SOLID] = {"solid.V"},
+    [LAYER_MATERIAL] = {"material.V"},
+    [LAYER_POSITION] = {"position.X", "position.Y", "position.Z"},
+};
+static const char *const noise_names[][3] = {
+    [FILM_RGB] = {"noise.R", "noise.G", "noise.B"}, [FILM_XYZ] = {"noise.X", "noise.Y", "noise.Z"}};
+
+/* Returns their number. */
+static int list_channels(const render_result *result, image_channel list[IMAGE_CHANNELS_MAX])
+{
+    const struct {
+        const char *name;
+        const double *values;
+    } maps[] = {{"rays.V", result->pixel_rays}, {"time.V", result->pixel_ns}, {"cut.V", result->pixel_cut}};
+    int count = 0;
+    for (int i = 0; i < LAYER_COUNT && result->layers; i++)
+        for (int k = 0; k < layer_channels[i]; k++)
+            list[count++] = (image_channel){layer_names[i][k], layer_channels[i] == 3 ? float_of_three : float_of,
+                                            result->layers->values[i] + k};
+    for (int k = 0; k < 3 && result->variance; k++)
+        list[count++] = (image_channel){noise_names[result->img->space][k], root_of_three, result->variance + k};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        if (maps[i].values)
+            list[count++] = (image_channel){maps[i].name, double_of, maps[i].values};
+    return count;
+}
+
+status record_image(const render_result *result, const record_more *more, const scene *s, const char *path, int bits,
+                    diagnostic *why)
+{
+    const film *f = result->img;
+    image_channel channels[IMAGE_CHANNELS_MAX];
+    image_rows rows = {.width = f->width, .height = f->height, .read = read_row, .of = f, .channels = channels};
+    if (image_format_of(path) != IMAGE_EXR)
+        return write_with_scene(rows, NULL, s, path, bits, why);
+    rows.channel_count = list_channels(result, channels);
+    for (int i = 0; more && i < more->count; i++)
+        channels[rows.channel_count++] = more->channels[i];
+    return write_with_scene(rows, more, s, path, bits, why);
 }
 
 status record_drawing(const image *img, const scene *s, const char *path, int bits, diagnostic *why)
 {
-    return write_with_scene(image_rows_of(img), s, path, bits, why);
+    return write_with_scene(image_rows_of(img), NULL, s, path, bits, why);
 }
+
+/* ---- maps ---- */
 
 static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)
 {
@@ -54,6 +124,10 @@ static status image_of_values(const double *values, const film *f, image **out, 
 status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why)
 {
     image *img = NULL;
+    const image_channel grey = {"Y", double_of, values};
+    if (image_format_of(path) == IMAGE_EXR)
+        return image_write_rows(
+            &(image_rows){.width = f->width, .height = f->height, .channels = &grey, .channel_count = 1}, path, 8, why);
     status code = image_format_of(path) == IMAGE_PFM ? image_of_values(values, f, &img, why)
                                                      : heatmap_create(values, f->width, f->height, title, &img, why);
     THEN(code, image_write(img, path, 8, why));

@@ -5,13 +5,23 @@
 #include "render/frame/renderer.h"
 
 /* Writes the film as an image in the format of the path's ending; bits: as in image_write. s: the scene, whose tone
- * applies to images with 8 bits, and which is stored in a PNG file's metadata (scene/file/shared.h); NULL: neither. */
-status record_image(const film *f, const scene *s, const char *path, int bits, diagnostic *why);
+ * applies to images with 8 bits, and which is stored in the metadata of PNG and OpenEXR (scene/file/shared.h); NULL:
+ * neither. OpenEXR also has channels for all else that the result has, by these names: noise.R .G .B, the standard
+ * errors (noise.X .Y .Z of CIE XYZ for a spectral film); normal.X .Y .Z, position.X .Y .Z, albedo.R .G .B, depth.Z,
+ * solid.V, material.V; rays.V, time.V (nanoseconds), cut.V; and `more`, which may be NULL. */
+typedef struct record_more {
+    image_channel channels[IMAGE_CHANNELS_MORE];
+    int count;
+    const image_text *texts; /* attributes; with the scene's at most IMAGE_TEXTS_MAX */
+    int text_count;
+} record_more;
+status record_image(const render_result *result, const record_more *more, const scene *s, const char *path, int bits,
+                    diagnostic *why);
 /* record_image for an image of the film on which lines were drawn. */
 status record_drawing(const image *img, const scene *s, const char *path, int bits, diagnostic *why);
 
-/* Writes values, one per pixel of f, as a false-colour image with a colour key and a title; or, if path ends in .pfm,
- * the numbers themselves (equal in all three channels). */
+/* Writes values, one per pixel of f, as a false-colour image with a colour key and a title; or the numbers
+ * themselves, if path ends in .pfm (equal in all three channels) or in .exr (as the channel Y). */
 status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why);
 
 /* record_layer_path returns the path of a named layer, PREFIX-WORD.pfm, in newly allocated memory, NULL when out of

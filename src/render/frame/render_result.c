@@ -48,7 +48,7 @@ uint64_t renderer_tracing_bytes(const scene *s)
 
 film_space render_film_space(const scene *s)
 {
-    return s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
+    return s->render.spectrum == SPECTRUM_SPECTRAL && s->render.bands == 0 ? FILM_XYZ : FILM_RGB;
 }
 
 status renderer_film(const scene *s, film **img, double **variance, diagnostic *why)

@@ -192,10 +192,20 @@ static bool upsample_scene(upsampled_scene *l, size_t priority_indices)
     return true;
 }
 
-static spectral_row row_at(const upsampled_scene *l, double lambda_nm, double density)
+/* The weights of what the film records: the observer's, or those of bands, whose mean over all wavelengths is the mean
+ * over the band. */
+static void eye_of(const render_settings *r, int64_t number, double eye[3])
 {
+    observer_weights(spectra_lambda(number), eye);
+    for (int c = 0; c < 3 && r->bands > 0; c++)
+        eye[c] = number * r->bands / SPECTRA_COUNT == r->band + c ? (double)r->bands : 0.0;
+}
+
+static spectral_row row_at(const upsampled_scene *l, int64_t number, double density)
+{
+    const double lambda_nm = spectra_lambda(number);
     spectral_row row;
-    observer_weights(lambda_nm, row.eye);
+    eye_of(&l->s->render, number, row.eye);
     for (int c = 0; c < 3; c++)
         row.eye[c] /= density;
     row.sky = upsampled_emission(&l->sky, lambda_nm);
@@ -224,9 +234,7 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
     return b;
 }
 
-/* Number of wavelengths that share one offset: the wavelengths of a sample point; with random paths, of all paths of a
- * pixel, or under sobol, of one replicate. */
-static int64_t wavelengths_per_offset(const render_settings *render)
+int64_t wavelengths_per_offset(const render_settings *render)
 {
     if (!integrator_traits_of(render)->by_chance)
         return render->wavelengths;
@@ -312,7 +320,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         return false;
     for (size_t i = 0; i < SPECTRA_COUNT; i++) {
         const double lambda_nm = spectra_lambda((int64_t)i);
-        p->rows[i] = row_at(l, lambda_nm, line_table_density(&p->lines, (int64_t)i));
+        p->rows[i] = row_at(l, (int64_t)i, line_table_density(&p->lines, (int64_t)i));
         for (size_t r = 0; r < p->priority_indices; r++)
             p->regions[i * p->priority_indices + r] = region_at(l, r, lambda_nm);
     }
@@ -320,7 +328,10 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         fill_light(l, p, k);
     p->per_offset = wavelengths_per_offset(&l->s->render);
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
-        whiten(p, i);
+        if (l->s->render.bands > 0)
+            p->white[i][0] = p->white[i][1] = p->white[i][2] = 1.0;
+        else
+            whiten(p, i);
     return fill_tints(l->s, p);
 }
 

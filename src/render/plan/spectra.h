@@ -60,7 +60,7 @@ enum { SPECTRA_OFFSETS = 256, SPECTRA_WHITE_FROM = 8 };
 
 /* Values at one wavelength that do not depend on a region. */
 typedef struct spectral_row {
-    double eye[3]; /* observer_weights over the density of the choice (line_table_density) */
+    double eye[3]; /* observer_weights (or those of bands) over the density of the choice (line_table_density) */
     double sky, horizon, ambient;
     double basis[SKY_BASIS_COUNT]; /* of a sky image's texels: white, cyan, magenta, yellow, red, green, blue */
 } spectral_row;
@@ -92,6 +92,10 @@ void spectra_destroy(spectra *p);
  * OBSERVER_LOW_NM to OBSERVER_HIGH_NM. */
 double spectra_lambda(int64_t number);
 int spectra_number(double lambda_nm);
+
+/* Number of wavelengths that share one offset, and are evenly spaced: the wavelengths of a sample point; with random
+ * paths, of all paths of a pixel, or under sobol, of one replicate. */
+int64_t wavelengths_per_offset(const render_settings *render);
 
 /* Returns the sample key with its wavelength. The wavelengths of one sample point of a pixel are evenly spaced over
  * 380..780 nm, from an offset that is hashed from seed, pixel and point (Cranley and Patterson, "Randomization of

@@ -1,5 +1,5 @@
-/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, in the metadata of a PNG image, or in
- * a shared page. */
+/* Reads a scene from a path: a scene file (read.c), or a shared scene in a link, in the metadata of a PNG or OpenEXR
+ * image, or in a shared page. */
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/text.h"
@@ -19,7 +19,7 @@ bool shared_is_link(const char *path)
 bool shared_is_file(const char *bytes, size_t size)
 {
     static const char page[] = "<!doctype html>";
-    return image_is_png(bytes, size) || (size >= sizeof page - 1 && memcmp(bytes, page, sizeof page - 1) == 0);
+    return image_holds_text(bytes, size) || (size >= sizeof page - 1 && memcmp(bytes, page, sizeof page - 1) == 0);
 }
 
 status shared_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)
@@ -107,11 +107,11 @@ static status read_page(const char *name, const char *bytes, size_t size, scene 
 status shared_read_file(const char *name, const char *bytes, size_t size, scene **out, diagnostic *why)
 {
     *out = NULL;
-    if (!image_is_png(bytes, size))
+    if (!image_holds_text(bytes, size))
         return read_page(name, bytes, size, out, why);
     char *text;
-    TRY(locate_failure(why, name, image_png_text(bytes, size, SHARED_KEYWORD, SHARED_TEXT_MAX, &text, why)));
-    const status code = text ? shared_read_text(name, text, strlen(text), out, why) : no_scene(name, "PNG image", why);
+    TRY(locate_failure(why, name, image_text_read(bytes, size, SHARED_KEYWORD, SHARED_TEXT_MAX, &text, why)));
+    const status code = text ? shared_read_text(name, text, strlen(text), out, why) : no_scene(name, "image", why);
     free(text);
     return code;
 }

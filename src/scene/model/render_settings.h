@@ -56,6 +56,9 @@ typedef struct render_settings {
     int64_t polarisation;     /* 1: rays carry Stokes vectors */
     int64_t spectrum;         /* spectrum_rule */
     int64_t wavelengths;      /* per camera ray, for the spectral film */
+    int64_t bands, band;      /* no parameters: for a frame of cli/outputs_frames.c. bands > 0: the spectral film's
+                               channels are not XYZ, but the mean spectral radiance in band, band + 1 and band + 2 of
+                               that many equal bands, counted from 0 */
     double lambda_nm;         /* wavelength of the refractive indices of an RGB film */
     double unit_m;            /* length of one scene unit in metres */
     int64_t threads;          /* 1..1024; 0: see scene_threads */

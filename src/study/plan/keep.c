@@ -269,7 +269,7 @@ static status write_kept(const study *s, const kept_cell *c, size_t what, const 
     if (wish == offsetof(study, keep_timeline))
         return record_timeline(frame, path, why);
     if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))
-        return record_image(frame->img, c->account->of, path, 8, why);
+        return record_image(frame, NULL, c->account->of, path, 8, why);
     const cell_table which = wish == offsetof(study, keep_metrics)  ? CELL_METRICS
                              : wish == offsetof(study, keep_curves) ? CELL_CURVES
                                                                     : CELL_MOTION;

@@ -8,6 +8,7 @@
 #include "measure/clock.h"
 #include "measure/usage.h"
 #include "study/rows/rows.h"
+#include <OpenEXR/openexr.h>
 #include <fcntl.h>
 #include <hwloc.h>
 #include <inttypes.h>
@@ -249,11 +250,19 @@ json_t *run_time(void)
     return json_string(row_time((int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000, text));
 }
 
+static json_t *openexr_version(void)
+{
+    int major, minor, patch;
+    const char *extra;
+    exr_get_library_version(&major, &minor, &patch, &extra);
+    return json_sprintf("%d.%d.%d", major, minor, patch);
+}
+
 static json_t *libraries(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:s}", "libpng", png_get_libpng_ver(NULL), "libjpeg-turbo",
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o}", "libpng", png_get_libpng_ver(NULL), "libjpeg-turbo",
                      TEXT_OF(LIBJPEG_TURBO_VERSION), "hwloc", HWLOC_VERSION, "libyaml", yaml_get_version_string(),
-                     "jansson", jansson_version_str());
+                     "jansson", jansson_version_str(), "OpenEXR", openexr_version());
 }
 
 static json_t *clocks(void)

@@ -1,0 +1,197 @@
+/* Colours of OpenEXR files: luminance and chroma, primaries, associated alpha. Colours are converted by CIE XYZ without
+ * adaptation to another white: the spectrum that they stand for stays the same. */
+#include "base/budget.h"
+#include "base/cancel.h"
+#include "image/codec.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- chroma ---- */
+
+status exr_chroma_create(exr_chroma *c, int width, int height, diagnostic *why)
+{
+    const size_t columns = (size_t)width / 2, lines = (size_t)height / 2;
+    *c = (exr_chroma){.columns = (int)columns, .lines = (int)lines};
+    TRY(memory_budget_check(2 * columns * lines * sizeof *c->red, "use a smaller one", why,
+                            "the chroma of %d x %d pixels", width, height));
+    c->red = calloc(columns * lines + 1, sizeof *c->red);
+    c->blue = calloc(columns * lines + 1, sizeof *c->blue);
+    return c->red && c->blue ? STATUS_OK : out_of_memory(why);
+}
+
+void exr_chroma_release(exr_chroma *c)
+{
+    free(c->red);
+    free(c->blue);
+    *c = (exr_chroma){.red = NULL};
+}
+
+static int64_t within(int64_t i, int64_t count)
+{
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+/* The value between from[i] and from[i + 1], of count values a stride apart: the filter of OpenEXR's reader
+ * (ImfRgbaYca.cpp, reconstructChromaHoriz), which is symmetric; the values at the edges are repeated. */
+static double between(const float *from, size_t stride, int count, int64_t i)
+{
+    static const double weights[] = {0.627123, -0.186077, 0.087929, -0.043159, 0.019597, -0.007540, 0.002128};
+    double sum = 0;
+    for (int64_t k = 0; k < 7; k++)
+        sum += weights[k] * ((double)from[(size_t)within(i - k, count) * stride] +
+                             (double)from[(size_t)within(i + 1 + k, count) * stride]);
+    return sum;
+}
+
+/* Chroma of a column at an even line. */
+static double at_line(const float *line, int columns, int64_t x)
+{
+    return x % 2 == 0 ? (double)line[within(x / 2, columns)] : between(line, 1, columns, x / 2);
+}
+
+/* Chroma at a pixel: columns first, then lines. */
+static double chroma_at(const float *plane, const exr_chroma *c, int64_t x, int64_t y)
+{
+    float column[14];
+    if (y % 2 == 0)
+        return at_line(plane + (size_t)within(y / 2, c->lines) * (size_t)c->columns, c->columns, x);
+    for (int64_t k = 0; k < 14; k++)
+        column[k] = (float)at_line(plane + (size_t)within(y / 2 - 6 + k, c->lines) * (size_t)c->columns, c->columns, x);
+    return between(column, 1, 14, 6);
+}
+
+/* weight: of R, G and B in luminance. */
+static void colour_of(const double weight[3], double red, double blue, float rgb[3])
+{
+    const double Y = (double)rgb[0], R = (red + 1.0) * Y, B = (blue + 1.0) * Y;
+    if (red == 0.0 && blue == 0.0)
+        return; /* grey stays exact */
+    rgb[0] = (float)R;
+    rgb[1] = (float)((Y - R * weight[0] - B * weight[2]) / weight[1]);
+    rgb[2] = (float)B;
+}
+
+/* ---- primaries ---- */
+
+typedef struct matrix {
+    double m[3][3];
+} matrix;
+
+static double minor_of(const matrix *a, int row, int column)
+{
+    const int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (column + 1) % 3, c2 = (column + 2) % 3;
+    return a->m[r1][c1] * a->m[r2][c2] - a->m[r1][c2] * a->m[r2][c1];
+}
+
+/* By cofactors, whose signs the cyclic indices contain; false if there is none. */
+static bool invert(const matrix *a, matrix *out)
+{
+    double determinant = 0;
+    for (int i = 0; i < 3; i++)
+        determinant += a->m[0][i] * minor_of(a, 0, i);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            out->m[k][i] = minor_of(a, i, k) / determinant;
+    return isfinite(determinant) && fabs(determinant) > 1e-9;
+}
+
+/* Linear RGB to XYZ: white, R = G = B = 1, has Y = 1 (SMPTE RP 177-1993). */
+static bool to_xyz(const exr_primaries *p, matrix *out)
+{
+    matrix inverse;
+    for (int i = 0; i < 3; i++)
+        out->m[0][i] = p->x[i], out->m[1][i] = p->y[i], out->m[2][i] = 1.0 - p->x[i] - p->y[i];
+    if (!invert(out, &inverse) || !(fabs(p->y[3]) > 1e-9))
+        return false;
+    const double white[3] = {p->x[3] / p->y[3], 1.0, (1.0 - p->x[3] - p->y[3]) / p->y[3]};
+    for (int i = 0; i < 3; i++) {
+        const double scale = inverse.m[i][0] * white[0] + inverse.m[i][1] * white[1] + inverse.m[i][2] * white[2];
+        for (int row = 0; row < 3; row++)
+            out->m[row][i] *= scale;
+    }
+    return true;
+}
+
+/* IEC 61966-2-1; equal to those of ITU-R BT.709, which a file without primaries has. */
+static const exr_primaries srgb = {{0.64, 0.30, 0.15, 0.3127}, {0.33, 0.60, 0.06, 0.3290}};
+
+static bool is_srgb(const exr_primaries *p)
+{
+    double most = 0;
+    for (int i = 0; i < 4; i++)
+        most = fmax(most, fmax(fabs(p->x[i] - srgb.x[i]), fabs(p->y[i] - srgb.y[i])));
+    return most < 1e-4;
+}
+
+/* weight: luminance of R, G and B, of sum 1. */
+static status conversion(const exr_primaries *p, matrix *to_srgb, double weight[3], diagnostic *why)
+{
+    matrix from, ours, back;
+    const bool valid = to_xyz(p, &from) && to_xyz(&srgb, &ours) && invert(&ours, &back);
+    for (int i = 0; i < 3 && valid; i++) {
+        weight[i] = from.m[1][i];
+        for (int k = 0; k < 3; k++)
+            to_srgb->m[i][k] = back.m[i][0] * from.m[0][k] + back.m[i][1] * from.m[1][k] + back.m[i][2] * from.m[2][k];
+    }
+    return valid ? STATUS_OK
+                 : diagnose(why, STATUS_BAD_INPUT, "save it with the chromaticities of its red, green, blue and white",
+                            "the chromaticities in the OpenEXR file are no primaries: they are on one line");
+}
+
+static void convert(const matrix *a, float rgb[3])
+{
+    const double r = (double)rgb[0], g = (double)rgb[1], b = (double)rgb[2];
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (float)(a->m[i][0] * r + a->m[i][1] * g + a->m[i][2] * b);
+}
+
+/* ---- alpha ---- */
+
+/* Porter and Duff 1984: the file holds colour times alpha. */
+static void divide(float rgb[3], float *alpha)
+{
+    *alpha = *alpha > 0.0F ? fminf(*alpha, 1.0F) : 0.0F;
+    if (*alpha > 0.0F && *alpha < 1.0F)
+        for (int i = 0; i < 3; i++)
+            rgb[i] = (float)((double)rgb[i] / (double)*alpha);
+}
+
+static void drop_full_alpha(image *img)
+{
+    const size_t count = (size_t)img->width * (size_t)img->height;
+    for (size_t i = 0; i < count; i++)
+        if (img->alpha[i] < 1.0F)
+            return;
+    free(img->alpha);
+    img->alpha = NULL;
+}
+
+status exr_colours_convert(image *img, const exr_primaries *primaries, const exr_chroma *chroma, int64_t x, int64_t y,
+                           diagnostic *why)
+{
+    const exr_primaries *p = primaries ? primaries : &srgb;
+    matrix to_srgb;
+    double weight[3] = {0, 1, 0};
+    const bool is_ours = is_srgb(p);
+    TRY(conversion(p, &to_srgb, weight, why));
+    for (size_t row = 0; row < (size_t)img->height; row++) {
+        TRY(cancel_check(why));
+        for (size_t column = 0; column < (size_t)img->width; column++) {
+            const size_t at = row * (size_t)img->width + column;
+            const int64_t cx = x + (int64_t)column, cy = y + (int64_t)row;
+            float *rgb = img->pixel + 3 * at;
+            if (chroma && cx >= 0 && cy >= 0 && cx < 2 * (int64_t)chroma->columns && cy < 2 * (int64_t)chroma->lines)
+                colour_of(weight, chroma_at(chroma->red, chroma, cx, cy), chroma_at(chroma->blue, chroma, cx, cy), rgb);
+            if (!is_ours)
+                convert(&to_srgb, rgb);
+            if (img->alpha)
+                divide(rgb, &img->alpha[at]);
+            if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+                return diagnose(why, STATUS_BAD_INPUT, "use an image with finite values",
+                                "the pixel in column %zu, row %zu from the top is not a finite number", column, row);
+        }
+    }
+    if (img->alpha)
+        drop_full_alpha(img);
+    return STATUS_OK;
+}
