@@ -33,10 +33,10 @@ static const struct ending {
     const char *text;
     file_use use;
 } endings[] = {
-    {".yaml", USE_SCENE}, {".yml", USE_SCENE}, {".obj", USE_MODEL}, {".ply", USE_MODEL}, {".stl", USE_MODEL},
-    {".gltf", USE_MODEL}, {".glb", USE_MODEL}, {".xyz", USE_MODEL}, {".png", USE_IMAGE}, {".jpg", USE_IMAGE},
-    {".jpeg", USE_IMAGE}, {".pfm", USE_IMAGE}, {".bmp", USE_IMAGE}, {".hdr", USE_IMAGE}, {".exr", USE_IMAGE},
-    {".agf", USE_DATA}, {".csv", USE_DATA}, {".tsv", USE_DATA}, {".txt", USE_DATA}, {".study", USE_STUDY},
+    {".yaml", USE_SCENE},    {".yml", USE_SCENE}, {".obj", USE_MODEL}, {".ply", USE_MODEL}, {".stl", USE_MODEL},
+    {".gltf", USE_MODEL},    {".glb", USE_MODEL}, {".xyz", USE_MODEL}, {".png", USE_IMAGE}, {".jpg", USE_IMAGE},
+    {".jpeg", USE_IMAGE},    {".pfm", USE_IMAGE}, {".bmp", USE_IMAGE}, {".hdr", USE_IMAGE}, {".exr", USE_IMAGE},
+    {".agf", USE_DATA},      {".csv", USE_DATA},  {".tsv", USE_DATA},  {".txt", USE_DATA},  {".study", USE_STUDY},
     {".lesson", USE_LESSON},
 };
 
