@@ -156,7 +156,7 @@ _cuvette()
     case $command in
     render)
         if [[ $current == -* ]]; then
-            _cuvette_words --output --set --json --bits --rays --time --cut --noise --timeline --repeat --beams --layers --live --memory-limit --help --usage --version
+            _cuvette_words --output --set --json --bits --rays --time --cut --noise --stokes --bands --timeline --repeat --beams --layers --live --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

@@ -69,7 +69,7 @@ typedef struct more_frames {
     image_text texts[3];
 } more_frames;
 
-/* Whether the scene can have what o asks for. */
+/* Whether the scene has what o requests. */
 status more_frames_check(const outputs *o, const scene *s, diagnostic *why);
 /* Renders the frames: 3 for Stokes vectors, one for three bands each. Release *m whatever the status. */
 status more_frames_render(const outputs *o, const scene *s, const film *whole, job *frame_job, more_frames *m,

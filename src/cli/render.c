@@ -216,7 +216,7 @@ static void print_summary(const job_account *f, const outputs *files)
     print_cut(f);
     const char *before = " -> ";
     for (size_t i = 0; i < sizeof written / sizeof written[0]; i++)
-        if (written[i]) {
+        if (written[i] && (i == 0 || !files->img || strcmp(written[i], files->img) != 0)) {
             printf("%s%s", before, written[i]);
             before = ", ";
         }

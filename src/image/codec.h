@@ -215,7 +215,7 @@ void exr_chroma_release(exr_chroma *c);
 
 /* Turns the values of a file into our colours: chroma, if there is any, into RGB (luminance is in all three channels),
  * linear RGB of these primaries into linear sRGB, and divides by alpha, which is clamped to 0..1 (alpha of 1 everywhere
- * is removed; colours with alpha 0 stay). x, y: the image's first pixel in the image of which chroma is. NULL: the
- * primaries of sRGB. STATUS_BAD_INPUT for a value that is not finite, and for primaries on one line. */
-status exr_colours_convert(image *img, const exr_primaries *primaries, const exr_chroma *chroma, int64_t x, int64_t y,
+ * is removed; colours with alpha 0 stay). chroma is changed. x, y: the image's first pixel in the image of which chroma
+ * is. NULL: the primaries of sRGB. STATUS_BAD_INPUT for a value that is not finite, and for primaries on one line. */
+status exr_colours_convert(image *img, const exr_primaries *primaries, exr_chroma *chroma, int64_t x, int64_t y,
                            diagnostic *why);

@@ -43,21 +43,31 @@ static double between(const float *from, size_t stride, int count, int64_t i)
     return sum;
 }
 
-/* Chroma of a column at an even line. */
-static double at_line(const float *line, int columns, int64_t x)
+/* Gives the even lines a value in each column. */
+static status widen(float **plane, const exr_chroma *c, diagnostic *why)
 {
-    return x % 2 == 0 ? (double)line[within(x / 2, columns)] : between(line, 1, columns, x / 2);
+    const size_t columns = (size_t)c->columns, lines = (size_t)c->lines;
+    TRY(memory_budget_check(2 * columns * lines * sizeof(float), "use a smaller one", why,
+                            "the chroma of %d x %d pixels", 2 * c->columns, 2 * c->lines));
+    float *wide = malloc((2 * columns * lines + 1) * sizeof *wide);
+    if (!wide)
+        return out_of_memory(why);
+    for (size_t y = 0; y < lines && !cancel_asked(); y++)
+        for (size_t x = 0; x < columns; x++) {
+            const float *line = *plane + y * columns;
+            wide[2 * (y * columns + x)] = line[x];
+            wide[2 * (y * columns + x) + 1] = (float)between(line, 1, c->columns, (int64_t)x);
+        }
+    free(*plane);
+    *plane = wide;
+    return cancel_check(why);
 }
 
-/* Chroma at a pixel: columns first, then lines. */
-static double chroma_at(const float *plane, const exr_chroma *c, int64_t x, int64_t y)
+/* Chroma at a pixel, of a plane that was widened. */
+static double chroma_at(const float *plane, const exr_chroma *c, size_t x, size_t y)
 {
-    float column[14];
-    if (y % 2 == 0)
-        return at_line(plane + (size_t)within(y / 2, c->lines) * (size_t)c->columns, c->columns, x);
-    for (int64_t k = 0; k < 14; k++)
-        column[k] = (float)at_line(plane + (size_t)within(y / 2 - 6 + k, c->lines) * (size_t)c->columns, c->columns, x);
-    return between(column, 1, 14, 6);
+    const size_t width = 2 * (size_t)c->columns;
+    return y % 2 == 0 ? (double)plane[y / 2 * width + x] : between(plane + x, width, c->lines, (int64_t)(y / 2));
 }
 
 /* weight: of R, G and B in luminance. */
@@ -166,7 +176,7 @@ static void drop_full_alpha(image *img)
     img->alpha = NULL;
 }
 
-status exr_colours_convert(image *img, const exr_primaries *primaries, const exr_chroma *chroma, int64_t x, int64_t y,
+status exr_colours_convert(image *img, const exr_primaries *primaries, exr_chroma *chroma, int64_t x, int64_t y,
                            diagnostic *why)
 {
     const exr_primaries *p = primaries ? primaries : &srgb;
@@ -174,6 +184,10 @@ status exr_colours_convert(image *img, const exr_primaries *primaries, const exr
     double weight[3] = {0, 1, 0};
     const bool is_ours = is_srgb(p);
     TRY(conversion(p, &to_srgb, weight, why));
+    if (chroma) {
+        TRY(widen(&chroma->red, chroma, why));
+        TRY(widen(&chroma->blue, chroma, why));
+    }
     for (size_t row = 0; row < (size_t)img->height; row++) {
         TRY(cancel_check(why));
         for (size_t column = 0; column < (size_t)img->width; column++) {
@@ -181,7 +195,8 @@ status exr_colours_convert(image *img, const exr_primaries *primaries, const exr
             const int64_t cx = x + (int64_t)column, cy = y + (int64_t)row;
             float *rgb = img->pixel + 3 * at;
             if (chroma && cx >= 0 && cy >= 0 && cx < 2 * (int64_t)chroma->columns && cy < 2 * (int64_t)chroma->lines)
-                colour_of(weight, chroma_at(chroma->red, chroma, cx, cy), chroma_at(chroma->blue, chroma, cx, cy), rgb);
+                colour_of(weight, chroma_at(chroma->red, chroma, (size_t)cx, (size_t)cy),
+                          chroma_at(chroma->blue, chroma, (size_t)cx, (size_t)cy), rgb);
             if (!is_ours)
                 convert(&to_srgb, rgb);
             if (img->alpha)

@@ -123,7 +123,7 @@ status image_encode_rows(const image_rows *rows, image_format format, int bits, 
                          size_t *size, diagnostic *why);
 
 /* Adds the disk space of `count` image files with 8 bits. The size of PFM is exact; the least size of other formats
- * assumes the best possible compression, the largest of OpenEXR three channels beside the colours. */
+ * assumes the best possible compression, the largest of OpenEXR six channels. */
 void image_room(image_format format, double width, double height, double count, disk_room *to);
 
 /* Whether the bytes begin as a PNG file does. */

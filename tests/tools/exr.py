@@ -98,11 +98,11 @@ def same(path, names, pfm):
 
 def near(path, names, limit, *terms):
     values = read(path)[2]
-    pictures = [(float(factor), read_pfm(pfm)[2]) for factor, pfm in zip(terms[0::2], terms[1::2])]
+    films = [(float(factor), read_pfm(pfm)[2]) for factor, pfm in zip(terms[0::2], terms[1::2])]
     worst = 0.0
     for i, name in enumerate(names.split(",")):
         for k, value in enumerate(values[name]):
-            worst = max(worst, abs(value - sum(factor * picture[3 * k + i] for factor, picture in pictures)))
+            worst = max(worst, abs(value - sum(factor * film[3 * k + i] for factor, film in films)))
     print("%.3g" % worst)
     return worst <= float(limit)
 

@@ -59,7 +59,7 @@ static float root_of_three(const void *of, size_t pixel)
     return (float)sqrt(((const double *)of)[3 * pixel]);
 }
 
-/* The names of what a result has beside the film, as other programs split them: layer, point, one letter. */
+/* The names of what a result has in addition to the film, as other programs split them: layer, point, one letter. */
 static const char *const layer_names[LAYER_COUNT][3] = {
     [LAYER_NORMAL] = {"normal.X", "normal.Y", "normal.Z"},
     [LAYER_ALBEDO] = {"albedo.R", "albedo.G", "albedo.B"},
