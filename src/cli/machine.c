@@ -5,7 +5,7 @@
 #include "cli/terminal.h"
 #include "measure/usage.h"
 #include "report/json.h"
-#include "report/wrap.h"
+#include "report/report.h"
 
 #include <stdio.h>
 #include <stdlib.h>

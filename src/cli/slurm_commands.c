@@ -1,8 +1,8 @@
 /* Calls of squeue and sbatch, and their answers. */
-#include "cli/slurm_commands.h"
 #include "base/cancel.h"
 #include "base/child.h"
 #include "base/text.h"
+#include "cli/study.h"
 
 #include <limits.h>
 #include <stdbool.h>

@@ -3,7 +3,6 @@
 #include "base/os_process.h"
 #include "base/text.h"
 #include "cli/options.h"
-#include "cli/slurm_commands.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "study/rows/row_files.h"

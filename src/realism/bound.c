@@ -1,5 +1,5 @@
 /* Bounds of the rounding errors of reflectances and of paths, to first order in the unit roundoff. */
-#include "realism/bound.h"
+#include "realism/metrics.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #include "base/json_build.h"
 #include "base/number.h"
 #include "report/json.h"
-#include "report/wrap.h"
+#include "report/report.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>

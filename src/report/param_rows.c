@@ -8,7 +8,6 @@
 #include "lint/lint.h"
 #include "report/json.h"
 #include "report/report.h"
-#include "report/wrap.h"
 #include "scene/model/medium.h"
 #include <stdbool.h>
 #include <stdlib.h>

@@ -9,6 +9,7 @@
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
+#include <stdio.h>
 
 enum { REPORT_SCHEMA = 1 }; /* increases when a key changes its meaning or is removed */
 
@@ -39,3 +40,15 @@ json_t *report_value(const param *row, const char *text);
 /* Lessons and their results, for `cuvette lesson show` and the laboratory (lesson_rows.c). */
 json_t *lesson_json(const lesson *l);
 json_t *lesson_result_json(const lesson *l, const lesson_result *r);
+
+/* --- tables for a terminal (wrap.c) ---
+ *
+ * Rows of a table wrapped to the width of a terminal. Widths count the characters of UTF-8. Ownership: everything is
+ * borrowed. Errors of the stream stay in the stream, where the caller checks them. */
+
+/* Writes start, the aligned cells of a row with the blanks after them, then the text of its last column, which may have
+ * any length, and a newline. columns is the width of the terminal: the text is wrapped under itself, or, if fewer than
+ * 24 columns are left for it, below the cells with an indent of 4. columns 0, for a pipe or a file: one line, nothing
+ * is wrapped. */
+void wrap_row(FILE *stream, int columns, const char *start, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));

@@ -1,5 +1,5 @@
 /* Rows of a table wrapped to the width of a terminal. */
-#include "report/wrap.h"
+#include "report/report.h"
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>

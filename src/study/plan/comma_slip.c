@@ -1,7 +1,7 @@
 /* Recognises decimal commas in the lists of a study: [1,5, 2,5], meant as 1.5 and 2.5, reads as four values. */
 #include "base/array.h"
 #include "base/number.h"
-#include "study/plan/read_grid.h"
+#include "study/plan/grid.h"
 #include <stdio.h>
 #include <string.h>
 

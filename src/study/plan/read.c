@@ -27,7 +27,6 @@
 #include "study/plan/grid.h"
 #include "study/plan/identity.h"
 #include "study/plan/keep.h"
-#include "study/plan/read_grid.h"
 #include <libgen.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,4 @@
 /* Reads the fixed settings, the grid and the reference of a study file, and tries every value on a scene. */
-#include "study/plan/read_grid.h"
 #include "base/number.h"
 #include "scene/model/params.h"
 #include "study/plan/grid.h"

@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/open.h"
-#include "study/plan/read_grid.h"
+#include "study/plan/grid.h"
 #include "study/rows/rows.h"
 #include "study/rows/table.h"
 #include <stdlib.h>

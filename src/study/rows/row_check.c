@@ -1,6 +1,6 @@
 /* Compares rows with each other: duplicates, orphans of killed processes, and quantities that must be equal. */
-#include "study/rows/row_check.h"
 #include "job/quantities.h"
+#include "study/rows/row_files.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -92,3 +92,20 @@ status row_environments_find(const row_files *files, row_environment_count **out
 status row_environments_choose(const row_files *files, const char *text, char key[ENVIRONMENT_KEY], diagnostic *why);
 /* The key of the environment with most rows, the last among equals; "" without rows. */
 status row_environments_main(const row_files *files, char key[ENVIRONMENT_KEY], diagnostic *why);
+
+/* --- row_check.c: missing columns, and checks of rows against each other, across files; for row_read.c --- */
+
+/* Fails if a file lacks a required column (`needed` in row_check.c). Other columns may be missing or added, in any
+ * order. */
+status row_check_columns(const csv *table, const char *path, row_kind kind, diagnostic *why);
+
+/* Drops the later of two rows of one repetition (and worker). Unless it is the same row in another file, that is an
+ * issue. */
+status row_check_drop_twins(row_files *files, diagnostic *why);
+
+/* Drops worker rows whose repetition has no row: the process was killed between the two writes. */
+status row_check_drop_orphans(row_files *workers, const row_files *rows, diagnostic *why);
+
+/* Quantities that depend only on the scene (QUANTITY_SAME) must be equal in all unmarked rows of a cell in one
+ * environment: drops the rows that differ from most others, as issues. Marked rows become issues and stay. */
+status row_check_quantities(row_files *files, diagnostic *why);

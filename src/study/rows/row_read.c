@@ -4,7 +4,6 @@
 #include "scene/model/open.h"
 #include "study/plan/identity.h"
 #include "study/rows/checksum.h"
-#include "study/rows/row_check.h"
 #include "study/rows/row_files.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 /* The contents of a solid, and edits of several objects as one rigid body (edit.h). */
 #include "geometry/shapes/shape.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/edit/edit_place.h"
 #include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 

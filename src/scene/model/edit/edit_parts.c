@@ -5,7 +5,6 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/edit/edit_place.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 

@@ -1,5 +1,4 @@
 /* Moves and rotates one object or the camera. Groups of objects: edit_parts.c. */
-#include "scene/model/edit/edit_place.h"
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
