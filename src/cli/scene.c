@@ -6,6 +6,7 @@
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "report/scene_export.h"
 #include "scene/assets/mesh_file.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
@@ -230,12 +231,13 @@ typedef struct edit_option {
 
 typedef struct scene_request {
     const char *path, *output, *model; /* path NULL: no file; output NULL: standard output; model NULL: no --from */
+    const char *exported;              /* file of another format; NULL: none */
     edit_option *edits;
     size_t edit_count;
     bool begins_empty, only_checks, only_lists, only_links, writes_all;
 } scene_request;
 
-enum { OPTIONS_MOST = 21 };
+enum { OPTIONS_MOST = 22 };
 
 static status parse_edit(const command_option *o, void *context, const char *text, diagnostic *why)
 {
@@ -257,6 +259,11 @@ static const command_option plain_options[] = {
      OPTION_FILLS(option_flag, scene_request, only_lists)},
     {"link", 0, NULL, "only print the scene as the fragment of a link, which 'cuvette render' and 'lab' open too",
      OPTION_FILLS(option_flag, scene_request, only_links)},
+    {"export", 0, "FILE",
+     "write the scene, with the triangles of its meshes, for other programs: .pov for POV-Ray, .gltf or .glb; notes "
+     "say "
+     "what that format cannot say",
+     OPTION_FILLS(option_text, scene_request, exported)},
     OPTION_MEMORY,
     {"all", 0, NULL, "write every parameter, not only those that differ from the defaults",
      OPTION_FILLS(option_flag, scene_request, writes_all)},
@@ -288,13 +295,18 @@ static status check_request(const scene_request *request, diagnostic *why)
     if ((request->path != NULL) + request->begins_empty + (request->model != NULL) > 1)
         return options_wrong("scene", NULL, why, "use only one of them",
                              "a scene file, --new and --from exclude each other");
-    const int only = request->only_checks + request->only_lists + request->only_links;
+    const int only = request->only_checks + request->only_lists + request->only_links + (request->exported != NULL);
     if (only > 1)
         return options_wrong("scene", NULL, why, "use only one of them",
-                             "--check, --list and --link exclude each other");
+                             "--check, --list, --link and --export exclude each other");
     if (request->output && only)
         return options_wrong("scene", NULL, why, "remove -o FILE",
-                             "--check, --list and --link do not write a scene file");
+                             "--check, --list, --link and --export do not write a scene file");
+    if (request->exported) {
+        TRY(outputs_ending("--export", request->exported, export_endings, EXPORT_FORMAT_COUNT,
+                           "use a name that ends in .pov, .gltf or .glb", &unused, why));
+        return outputs_check_folder("--export", request->exported, why);
+    }
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
     TRY(outputs_ending("-o", request->output, endings, 2, "use a name that ends in .yaml or .yml", &unused, why));
@@ -350,16 +362,18 @@ static status print_list(const scene *s)
     return STATUS_OK;
 }
 
-static status check_files(const scene_request *request, scene *s, diagnostic *why)
+static status load_files(const scene_request *request, scene *s, diagnostic *why)
 {
     status result = scene_input_load(s, why);
-    if (result == STATUS_OK)
-        result = scene_check(s, why); /* again, now with the triangles of the meshes */
-    if (result != STATUS_OK) {
-        if (why->line == 0) /* keep the position of an error that has a line */
-            diagnostic_locate(why, name_of(request), 0, 0);
-        return result;
-    }
+    THEN(result, scene_check(s, why));         /* again, now with the triangles of the meshes */
+    if (result != STATUS_OK && why->line == 0) /* keep the position of an error that has a line */
+        diagnostic_locate(why, name_of(request), 0, 0);
+    return result;
+}
+
+static status check_files(const scene_request *request, scene *s, diagnostic *why)
+{
+    TRY(load_files(request, s, why));
     isa level = ISA_BASE;
     TRY(scene_input_isa(&level, why));
     TRY(scene_input_lint(s, level, why));
@@ -381,8 +395,33 @@ static status print_link(const scene *s, diagnostic *why)
     return result;
 }
 
+static status write_exported(const void *content, FILE *stream, diagnostic *why)
+{
+    const scene_export *made = content;
+    (void)why;
+    fwrite(made->bytes, 1, made->size, stream); /* the caller checks the stream */
+    return STATUS_OK;
+}
+
+static status export_scene(const scene_request *request, scene *s, diagnostic *why)
+{
+    scene_export made;
+    size_t format = 0;
+    TRY(outputs_check_place("--export", request->exported, s, why));
+    TRY(load_files(request, s, why));
+    TRY(outputs_ending("--export", request->exported, export_endings, EXPORT_FORMAT_COUNT, "", &format, why));
+    TRY(scene_export_make(s, (export_format)format, request->exported, &made, why));
+    const status code = outputs_write_text(request->exported, write_exported, &made, why);
+    for (size_t i = 0; i < made.note_count && code == STATUS_OK; i++)
+        terminal_note(made.notes[i]);
+    scene_export_release(&made);
+    return code;
+}
+
 static status run(const scene_request *request, scene *s, diagnostic *why)
 {
+    if (request->exported)
+        return export_scene(request, s, why);
     if (request->only_checks)
         return check_files(request, s, why);
     if (request->only_lists)
@@ -400,7 +439,8 @@ static const char about[] =
     "are dropped. If there is an error, nothing is written.\vExamples:\n"
     "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
     "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8\n"
-    "  cuvette scene --from bottle.glb -o bottle.yaml";
+    "  cuvette scene --from bottle.glb -o bottle.yaml\n"
+    "  cuvette scene rod.yaml --export rod.pov";
 
 status command_scene(int argc, char **argv, diagnostic *why)
 {

@@ -155,6 +155,12 @@ const char *texture_note(const texture *t)
     return t->note;
 }
 
+void texture_size(const texture *t, int *width, int *height)
+{
+    *width = t->level[0].width;
+    *height = t->level[0].height;
+}
+
 const texture *texture_covered(const texture *t)
 {
     return t->covered;

@@ -46,6 +46,9 @@ const char *texture_note(const texture *t);
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */
 
+/* The size of the image itself, in texels. */
+void texture_size(const texture *t, int *width, int *height);
+
 /* The texture at (u, v). footprint is the size of a pixel in u or v, whichever is larger; it applies to
  * TEXTURE_TRILINEAR only, whose level is log2(footprint * larger side in texels), from 0 (bilinear in the image itself:
  * a pixel covers at most a texel) to the last (one texel, the mean of the image). The result is finite, within the
