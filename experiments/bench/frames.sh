@@ -1,9 +1,10 @@
 # shellcheck shell=bash
 # frames: rod.yaml by depth and threads, with the report's algorithm and POV-Ray
 # SIZE=800x600; NOCOUNTERS, a program without counters. The others are peers/report next to CUVETTE (make peers) and,
-# if it is installed, POV-Ray (make setup-peers) with peers/rod.pov. Pruned: branches with less than 1/255 of a camera
-# ray's weight are not followed. CPU seconds cover only the tracing; POV-Ray reports its own. POV-Ray traces the whole
-# tree only in the first three rounds, because it takes a quarter of a minute each time.
+# if it is installed, POV-Ray (make setup-peers), which reads rod.yaml from `cuvette scene --export`. Pruned: branches
+# with less than 1/255 of a camera ray's weight are not followed. CPU seconds cover only the tracing; POV-Ray reports
+# its own. POV-Ray traces the whole tree only in the first three rounds, because it takes a quarter of a minute each
+# time.
 reps=${REPS:-7} size=${SIZE:-800x600} bare=${NOCOUNTERS:-} algorithm=$build/peers/report with_pov=
 
 prepare() {
@@ -17,8 +18,10 @@ prepare() {
 # frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in one worker pool
 frame() { traced "$1" "$3" "$2" "$here/scenes/rod.yaml" --repeat 5 "${@:4}"; }
 pov() { # pov CONTESTANT depth adc; the ground is unbounded, so the number of its tests is the number of rays
-    povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 \
-        "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 || failed povray "$work/log"
+    "$ours" scene "$here/scenes/rod.yaml" --set "render.depth=$2" --set "render.min_weight=$3" \
+        --export "$work/rod.pov" >"$work/log" 2>&1 || failed "$ours" "$work/log"
+    povray "+I$work/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 >"$work/log" 2>&1 ||
+        failed povray "$work/log"
     note "$1" "$(awk \
         '/Trace Time/ {f = 1} f && /CPU-seconds/ {for (i = 1; i <= NF; i++) if ($i == "with") {print $(i + 1); exit}}' \
         "$work/log")" \

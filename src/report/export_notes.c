@@ -15,7 +15,7 @@ const char *const export_endings[EXPORT_FORMAT_COUNT] = {".pov", ".gltf", ".glb"
 /* --- the decisions --- */
 
 #define SAID NULL /* or noted by the writer where it is not */
-#define UNSEEN "" /* the picture does not depend on it */
+#define UNSEEN "" /* the image does not depend on it */
 #define SETTINGS "the program that reads the file has its own settings of rendering"
 #define TREES "POV-Ray traces ray trees, no random paths"
 #define POLARISED "light has no polarisation"
@@ -36,7 +36,7 @@ const char *const export_endings[EXPORT_FORMAT_COUNT] = {".pov", ".gltf", ".glb"
 #define NO_AMBIENT "there is no ambient light"
 #define HIGHLIGHTS "Phong's highlights are left out: surfaces have the roughness of their exponent"
 #define MIRRORS "a reflectance that does not follow from the index is left out"
-#define ONE_LAYER "layers of first hits are no picture of light"
+#define ONE_LAYER "layers of first hits are no image of light"
 #define BEAM_LIGHT "beams are left out"
 
 /* Names of parameters, separated by blanks. */

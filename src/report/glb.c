@@ -210,7 +210,9 @@ static void add_finish(const glb_finish *f, json_t *surface, json_t *extensions,
 json_int_t glb_add_material(glb *l, const imported_material *m, const char *name, const glb_finish *finish)
 {
     const double *e = m->emissive, brightest = fmax(e[0], fmax(e[1], e[2])), by = fmax(brightest, 1.0);
-    json_t *one = json_pack("{s:b}", "doubleSided", 1), *extensions = extensions_json(m, brightest, finish != NULL, l);
+    const bool is_solid = finish && m->transmission > 0.0; /* seen from outside only, as the extension wants it */
+    json_t *one = json_pack("{s:b}", "doubleSided", !is_solid),
+           *extensions = extensions_json(m, brightest, finish != NULL, l);
     const double alpha = add_alpha(m, one, l);
     json_t *surface = json_pack("{s:[f,f,f,f]}", "baseColorFactor", fmin(m->color[0], 1.0), fmin(m->color[1], 1.0),
                                 fmin(m->color[2], 1.0), alpha);

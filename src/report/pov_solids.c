@@ -3,7 +3,7 @@
  * POV-Ray keeps a list of the solids that a ray is in. At a surface it refracts from the last entered solid into the
  * next, and not at all where the ray leaves another than the last: an overlap belongs to the solid that is entered
  * last. Our media have priorities instead. So the shape of a clear solid is cut out of all that it displaces, but
- * moved inwards by a thin skin: a ray enters the next solid before it leaves the first, within the skin, and is
+ * moved inwards by a thin margin: a ray enters the next solid before it leaves the first, within the margin, and is
  * refracted once, between the right indices. POV-Ray would still reflect a part where the ray leaves the first
  * solid, and computes this part as if the second one began there. This is prevented by an interior_texture, which is
  * clear where the surface lies in the other solid. */
@@ -24,8 +24,8 @@ enum { POV_VERTEX_TEXTURES_MAX = 1 << 15 };
 typedef struct part {
     solid_shape shape;
     bounds3 box;
-    double skin;
-    bool grows;        /* its surface moves outwards by the skin, into a solid that it touches */
+    double margin;
+    bool grows;        /* its surface moves outwards by the margin, into a solid that it touches */
     int *cut, *within; /* regions cut out of it; clear ones that it may reach into */
     size_t cut_count, within_count;
     const shading_material *texture; /* of Texture_NUMBER, if shared */
@@ -263,13 +263,13 @@ static status meet(solids *v, int low, int high)
 
 static status find_meetings(solids *v)
 {
-    const double skin = pov_skin(v->to.w->p);
+    const double margin = pov_margin(v->to.w->p);
     for (int r = 1; r <= v->to.g->region_count; r++) {
         part *one = &v->parts[r];
         one->shape = scene_geometry_shape(v->to.g, r);
         const shape_rule *rule = shape_of(&one->shape);
         one->box = shape_world_box(&one->shape);
-        one->skin = fmin(skin, rule->thickness ? rule->thickness(&one->shape) / 8.0 : skin);
+        one->margin = fmin(margin, rule->thickness ? rule->thickness(&one->shape) / 8.0 : margin);
     }
     for (int r = 1; r <= v->to.g->region_count; r++) /* each pair with a clear solid once */
         for (int other = 1; other <= v->to.g->region_count && export_is_clear(v->to.w, r); other++)
@@ -291,7 +291,7 @@ static status put_shape(const solids *v, int r, double inset)
 
 static double outset(const part *p)
 {
-    return p->grows ? -p->skin : 0.0;
+    return p->grows ? -p->margin : 0.0;
 }
 
 static void put_mesh_name(const solids *v, int r)
@@ -368,7 +368,7 @@ static void put_interior(const solids *v, int r)
 static status put_cut(const solids *v, int r, int high)
 {
     fputs("\n  object { ", v->to.out);
-    TRY(put_shape(v, high, v->parts[high].skin));
+    TRY(put_shape(v, high, v->parts[high].margin));
     pov_placement_write(&v->parts[high].shape, v->to.out);
     if (export_is_clear(v->to.w, r)) {
         fprintf(v->to.out, "\n    texture { Texture_%d } interior_texture { Pass }", v->parts[high].number);

@@ -23,7 +23,7 @@ typedef struct scene_export {
 status scene_export_make(const scene *s, export_format format, const char *path, scene_export *out, diagnostic *why);
 void scene_export_release(scene_export *e);
 
-/* Why the format does not say a parameter: NULL if it does, or the writer notes what it does not; "" if the picture
+/* Why the format does not say a parameter: NULL if it does, or the writer notes what it does not; "" if the image
  * does not depend on it. *known: the parameter has a decision. */
 const char *export_reason(const param *row, export_format format, bool *known);
 
@@ -75,14 +75,14 @@ typedef struct pov {
     diagnostic *why;
 } pov;
 
-/* The skin in which media meet: above the least distance at which POV-Ray sees a surface, 1e-4 (MIN_ISECT_DEPTH); if
+/* The margin in which media meet: above the least distance at which POV-Ray sees a surface, 1e-4 (MIN_ISECT_DEPTH); if
  * media absorb, also above that of its shadow rays, 1e-3 (SHADOW_TOLERANCE), so that they know which media they are
  * in. */
-#define POV_SKIN 0.00025
-#define POV_SKIN_ABSORBING 0.00125
-static inline double pov_skin(const plan *p)
+#define POV_MARGIN 0.00025
+#define POV_MARGIN_ABSORBING 0.00125
+static inline double pov_margin(const plan *p)
 {
-    return p->geometry->attenuates ? POV_SKIN_ABSORBING : POV_SKIN;
+    return p->geometry->attenuates ? POV_MARGIN_ABSORBING : POV_MARGIN;
 }
 
 status pov_solids_write(const pov *to);

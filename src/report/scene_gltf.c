@@ -279,6 +279,16 @@ static status add_meshes(gltf *g, int r, const solid_shape *shape)
     return STATUS_OK;
 }
 
+/* The format does not want the matrix of a node that is not moved. */
+static bool is_default(const json_t *matrix)
+{
+    size_t i;
+    const json_t *one;
+    bool same = true;
+    json_array_foreach(matrix, i, one) same &= json_number_value(one) == (i % 5 == 0 ? 1.0 : 0.0);
+    return same;
+}
+
 /* A node for one part of a solid; offset: of a copy, in the solid's frame. */
 static void add_node(gltf *g, int r, const solid_shape *shape, json_int_t number, vec3 offset)
 {
@@ -291,10 +301,13 @@ static void add_node(gltf *g, int r, const solid_shape *shape, json_int_t number
                z = vec3_scale(placed_axis(&turn, 2), scale.z),
                origin = vec3_add(shape->position, mat3_apply(turn, offset));
     /* the mesh is mirrored as well: its z is the other way */
-    add(g, g->nodes,
-        json_pack("{s:o,s:I,s:o}", "name", json_of_text(export_name(g->w, r)), "mesh", number, "matrix",
-                  matrix_json(mirrored_if(true, x), mirrored_if(true, y), vec3_scale(mirrored_if(true, z), -1.0),
-                              mirrored_if(true, origin))));
+    json_t *matrix = matrix_json(mirrored_if(true, x), mirrored_if(true, y), vec3_scale(mirrored_if(true, z), -1.0),
+                                 mirrored_if(true, origin)),
+           *node = json_pack("{s:o,s:I}", "name", json_of_text(export_name(g->w, r)), "mesh", number);
+    if (!is_default(matrix))
+        g->bad |= json_object_set(node, "matrix", matrix) != 0;
+    json_decref(matrix);
+    add(g, g->nodes, node);
 }
 
 static void add_nodes(gltf *g, int r, const solid_shape *shape)

@@ -45,8 +45,8 @@ static void note_settings(const export_work *w)
     export_note(
         n, NULL,
         "POV-Ray's tolerances are lengths, from 1e-6 to 1e-3 scene units: surfaces closer than that are missed, "
-        "and media that touch or overlap meet in a skin of %g",
-        pov_skin(w->p));
+        "and media that touch or overlap meet in a margin of %g",
+        pov_margin(w->p));
 }
 
 static void put_settings(const pov *v)

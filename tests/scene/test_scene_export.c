@@ -1,4 +1,4 @@
-/* Exports of scenes: every parameter has a decision; numbers in a .pov read back as the same doubles, skins are where
+/* Exports of scenes: every parameter has a decision; numbers in a .pov read back as the same doubles, margins are where
  * media meet, texts are escaped; a glTF file, read here as JSON and bytes, has the camera, lights, volumes and media of
  * the scene, and the mesh reader finds the same. */
 #include <math.h>
@@ -150,19 +150,19 @@ static void settings_are_said(void **state)
     scene_export_release(&e);
 }
 
-/* The rod: its liquid reaches into the vessel, which is cut out of it, thinner by the skin. */
-static void media_meet_in_a_skin(void **state)
+/* The rod: its liquid reaches into the vessel, which is cut out of it, thinner by the margin. */
+static void media_meet_in_a_margin(void **state)
 {
     (void)state;
     scene *s = rod_scene("");
     scene_export e = exported(s, EXPORT_POV);
     const char *liquid = strstr(e.bytes, "difference { // liquid");
-    const double skin = POV_SKIN;
+    const double margin = POV_MARGIN;
     assert_non_null(liquid);
     const char *cut = strstr(liquid, "difference { cylinder { y*");
     assert_non_null(cut);
-    assert_true(number_after(cut, "y*") == skin);
-    assert_true(fabs(number_after(cut, "} cylinder { y*") - (0.1 - skin)) < 1e-15);
+    assert_true(number_after(cut, "y*") == margin);
+    assert_true(fabs(number_after(cut, "} cylinder { y*") - (0.1 - margin)) < 1e-15);
     assert_non_null(strstr(cut, "interior_texture { Pass }"));
     const char *vessel = strstr(e.bytes, "object { // vessel");
     assert_non_null(vessel);
@@ -395,14 +395,10 @@ static void the_mesh_reader_finds_the_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_parameter_has_a_decision),
-        cmocka_unit_test(what_is_not_said_is_noted),
-        cmocka_unit_test(numbers_read_back_the_same),
-        cmocka_unit_test(settings_are_said),
-        cmocka_unit_test(media_meet_in_a_skin),
-        cmocka_unit_test(texts_are_escaped),
-        cmocka_unit_test(solids_are_where_they_were),
-        cmocka_unit_test(materials_camera_and_lights_are_said),
+        cmocka_unit_test(every_parameter_has_a_decision),  cmocka_unit_test(what_is_not_said_is_noted),
+        cmocka_unit_test(numbers_read_back_the_same),      cmocka_unit_test(settings_are_said),
+        cmocka_unit_test(media_meet_in_a_margin),          cmocka_unit_test(texts_are_escaped),
+        cmocka_unit_test(solids_are_where_they_were),      cmocka_unit_test(materials_camera_and_lights_are_said),
         cmocka_unit_test(the_mesh_reader_finds_the_scene),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
