@@ -1,11 +1,11 @@
-/* BMP: a file header of 14 bytes, a header of 12 bytes (OS/2 1) to 124 bytes (BITMAPV5HEADER), masks or a palette, and
- * from the file header's offset rows of pixels, each padded to a multiple of 4 bytes; from the bottom, or from the top if
- * the height is negative. Microsoft, Windows GDI, "Bitmap Storage"; IBM, OS/2 2.0 Presentation Manager. Numbers are
- * little-endian.
+/* BMP: a file header of 14 bytes, a header of 12 bytes (OS/2 1) to 124 bytes (BITMAPV5HEADER), masks or a palette,
+ * and from the file header's offset rows of pixels, each padded to a multiple of 4 bytes; from the bottom, or from
+ * the top if the height is negative. Microsoft, Windows GDI, "Bitmap Storage"; IBM, OS/2 2.0 Presentation Manager.
+ * Numbers are little-endian.
  *
  * Bit fields have any contiguous bits. The fourth byte of 32 bits is alpha only if a mask says so. Pixels that
- * run-length compression skips have the first colour of the palette, and alpha 0. Of colour spaces, an embedded profile
- * is applied. */
+ * run-length compression skips have the first colour of the palette, and alpha 0. Of colour spaces, an embedded
+ * profile is applied. */
 #include "base/cancel.h"
 #include "image/codec.h"
 

@@ -61,14 +61,14 @@ typedef struct codec_color {
 } codec_color;
 
 void codec_color_set_curve(codec_color *color, const codec_curve *all);
-/* Sets the primaries: CIE xy of white, red, green, blue. White stays white, by Bradford's adaptation to D65. False, with
- * color unchanged, if they span no colours. */
+/* Sets the primaries: CIE xy of white, red, green, blue. White stays white, by Bradford's adaptation to D65. False,
+ * with color unchanged, if they span no colours. */
 bool codec_color_set_primaries(codec_color *color, const double xy[8]);
 /* The channels are CIE XYZ, without adaptation. */
 void codec_color_set_XYZ(codec_color *color);
 
-/* Reads an ICC profile of RGB with primaries, or of grey values. Returns NULL; or, with color unchanged, why the profile
- * cannot be applied ("is damaged"). Tables of the result borrow from the bytes. */
+/* Reads an ICC profile of RGB with primaries, or of grey values. Returns NULL; or, with color unchanged, why the
+ * profile cannot be applied ("is damaged"). Tables of the result borrow from the bytes. */
 #define CODEC_PROFILE_NOTE "its colour profile %s, and is ignored: colours are read as sRGB"
 const char *codec_color_of_icc(const unsigned char *bytes, size_t size, codec_color *color);
 

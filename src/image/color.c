@@ -1,6 +1,6 @@
-/* Colour spaces of image files, to linear light with the primaries of sRGB: transfer functions as tables, primaries as a
- * matrix, and ICC profiles that consist of these two. Sources: ICC.1:2022 (profiles, adaptation by Bradford's matrix),
- * IEC 61966-2-1 (sRGB), SMPTE RP 177 (primaries to XYZ). */
+/* Colour spaces of image files, to linear light with the primaries of sRGB: transfer functions as tables, primaries
+ * as a matrix, and ICC profiles that consist of these two. Sources: ICC.1:2022 (profiles, adaptation by Bradford's
+ * matrix), IEC 61966-2-1 (sRGB), SMPTE RP 177 (primaries to XYZ). */
 #include "image/codec.h"
 
 #include "base/cancel.h"

@@ -1,10 +1,10 @@
-/* Radiance's HDR pictures: lines of text, the resolution with the order of rows and columns, then pixels of three
- * mantissas and a common exponent, plain or with run lengths in the old or the new way. Ward, "Real pixels", Graphics
- * Gems II, 1991; Ward, Radiance File Formats; run lengths as in Radiance's color.c.
+/* Radiance's HDR images: lines of text, the resolution with the order of rows and columns, then pixels of three
+ * mantissas and a common exponent, plain or with run lengths in the old or the new way. Ward, "Real pixels",
+ * Graphics Gems II, 1991; Ward, Radiance File Formats; run lengths as in Radiance's color.c.
  *
  * A value is mantissa / 256 times 2^(exponent - 128), as most programs read it, so that values such as 1 are exact
- * (Walter, rgbe.c; Radiance adds half a step of the mantissa). Pixels are divided by all EXPOSUREs and COLORCORRs, which
- * gives radiance again. RGB without PRIMARIES has those of sRGB, as other programs write and read it. */
+ * (Walter, rgbe.c; Radiance adds half a step of the mantissa). Pixels are divided by all EXPOSUREs and COLORCORRs,
+ * which gives radiance again. RGB without PRIMARIES has those of sRGB, as other programs write and read it. */
 #include "image/codec.h"
 
 #include "base/cancel.h"

@@ -1,14 +1,36 @@
 /* Images in memory and in files: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec), OpenEXR; BMP and Radiance's HDR for
- * reading only. No time stamps, the same bytes for the same image; files are written atomically. Ownership: image_create and image_read
- * allocate an image, image_destroy releases it. */
+ * reading only. No time stamps, the same bytes for the same image; files are written atomically. Ownership:
+ * image_create and image_read allocate an image, image_destroy releases it. */
 #pragma once
 
 #include "base/budget.h"
 #include "base/pack.h"
 #include "base/status.h"
-#include "image/tone.h"
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+
+/* ---- tone: how an image of 8 bits shows radiance ----
+ *
+ * Exposure and tone curve, before the sRGB encoding. Files of numbers (PFM, OpenEXR, PNG with 16 bits) keep the linear
+ * values, and so do films and comparisons. Pure; cannot fail. */
+
+typedef enum tone_curve { TONE_NONE, TONE_REINHARD, TONE_ACES } tone_curve;
+
+/* All zero: values are shown as they are. */
+typedef struct image_tone {
+    double exposure; /* stops: values are multiplied by 2^exposure before the curve */
+    int64_t curve;   /* tone_curve */
+    double white;    /* Reinhard's: the least luminance, after the exposure, that is shown as white */
+} image_tone;
+
+/* Whether the tone changes no value. */
+bool image_tone_is_plain(const image_tone *t);
+
+/* Applies the tone to linear RGB values in place. Values that are not positive, and NaN, stay so. */
+void image_tone_apply(const image_tone *t, float *rgb, size_t pixels);
+
+/* ---- images ---- */
 
 enum { IMAGE_NOTE_MAX = 256 };
 
@@ -39,9 +61,9 @@ status image_add_alpha(image *img, diagnostic *why);
 /* Adds to a note. */
 void image_note(char note[IMAGE_NOTE_MAX], const char *text, ...) __attribute__((format(printf, 2, 3)));
 
-/* Light is not negative, but resampling of images with sharp bright parts leaves small negative values: those down to a
- * tenth of the largest value, which the caller replaces by 0, are added to the note. STATUS_BAD_INPUT for larger ones, and for
- * values that are not finite. *largest, if not NULL: the largest value, at least 0. */
+/* Light is not negative, but resampling of images with sharp bright parts leaves small negative values: those down
+ * to a tenth of the largest value, which the caller replaces by 0, are added to the note. STATUS_BAD_INPUT for
+ * larger ones, and for values that are not finite. *largest, if not NULL: the largest value, at least 0. */
 status image_check_light(const image *img, char note[IMAGE_NOTE_MAX], float *largest, diagnostic *why);
 
 /* Packs an image as bytes (base/pack.h), without its tone, and unpacks it; pixel values are not checked. The caller

@@ -239,7 +239,8 @@ static bool check_precision(jpeg_job *job, j_decompress_ptr cinfo)
     return false;
 }
 
-/* CMYK without a profile: R = (1 - C) (1 - K), rounded to 8 bits. A file with Adobe's marker stores 1 - C, and so on. */
+/* CMYK without a profile: R = (1 - C) (1 - K), rounded to 8 bits. A file with Adobe's marker stores 1 - C, and so
+ * on. */
 static void store_row(const jpeg_job *job, const struct jpeg_decompress_struct *cinfo, float *pixel)
 {
     const size_t width = (size_t)job->img->width;

@@ -143,7 +143,7 @@ void codec_words_encode(const codec_words *table, const float *linear, size_t co
     }
 }
 
-/* ---- tone.h ---- */
+/* ---- tone ---- */
 
 bool image_tone_is_plain(const image_tone *t)
 {

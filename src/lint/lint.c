@@ -1,5 +1,5 @@
-/* Notes; and the linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light that is
- * cut. */
+/* Notes; and the linter of a loaded scene: the hints, the camera's position, overlaps and gaps of solids, and light
+ * that is cut. */
 #include "lint/lint.h"
 #include "geometry/shapes/shape.h"
 #include "lint/parts.h"

@@ -12,9 +12,9 @@
 #include "render_fixture.h"
 #include <unistd.h>
 
-/* Tests of BMP files, written here according to Microsoft's description of the format ("Bitmap Storage"), independently
- * of the reader: the pixels equal those of a PNG, and so does the film; a file that is damaged or of an unsupported kind
- * is refused with one line of error. */
+/* Tests of BMP files, written here according to Microsoft's description of the format ("Bitmap Storage"),
+ * independently of the reader: the pixels equal those of a PNG, and so does the film; a file that is damaged or of
+ * an unsupported kind is refused with one line of error. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -420,7 +420,8 @@ static void jpeg_with_a_false_size_is_refused(void **state)
     free(path);
 }
 
-/* Without a profile R = (1 - C) (1 - K); Adobe's marker means that 1 - C is stored. All four channels are equal here. */
+/* Without a profile R = (1 - C) (1 - K); Adobe's marker means that 1 - C is stored. All four channels are equal
+ * here. */
 static void cmyk_jpeg_is_converted(void **state)
 {
     (void)state;
@@ -443,7 +444,7 @@ static void cmyk_jpeg_is_converted(void **state)
     }
 }
 
-/* The frame header (SOF) declares what the library does not read: that is told, and not that the file is damaged. */
+/* The frame header (SOF) declares what the library does not read: the message names it, and does not say damaged. */
 static void unsupported_jpeg_is_refused_by_name(void **state)
 {
     (void)state;

@@ -223,7 +223,7 @@ static void an_empty_scene_has_the_defaults(void **state)
     assert_non_null(s);
     size_t count = 0;
     assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
-    assert_int_equal(count, 41 + 13 + 13); /* of render, camera, background: their objects are there at once */
+    assert_int_equal(count, 41 + 13 + 14); /* of render, camera, background: their objects are there at once */
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "image/tone.h"
+#include "image/image.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
 #include <stdbool.h>

@@ -14,6 +14,6 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 /* Fails if the scene has too many objects of a kind, or primitives. */
 status check_limits(const scene *s, diagnostic *why);
 
-/* Checks the image of a sky that was just read (image_check_light) and its brightness, replaces small negative values by
- * 0, notes that, and sets sky->brightest. path: for the diagnostic. */
+/* Checks the image of a sky that was just read (image_check_light) and its brightness, replaces small negative
+ * values by 0, notes that, and sets sky->brightest. path: for the diagnostic. */
 status sky_take(background *sky, const char *path, diagnostic *bad);

@@ -20,7 +20,8 @@ typedef enum analyser_kind {
     ANALYSER_CIRCULAR_LEFT,
     ANALYSER_CIRCULAR_RIGHT
 } analyser_kind;
-/* Maximum radiance of a background image times its brightness: below the film's limit, and above the largest half float, 65504. */
+/* Maximum radiance of a background image times its brightness: below the film's limit, and above the largest half
+ * float, 65504. */
 #define SCENE_SKY_MAX 65536.0F
 
 /* y is up; yaw 0 looks along +z, positive yaw turns towards +x, positive pitch looks up; x is to the right at yaw 0. */
