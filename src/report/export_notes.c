@@ -67,7 +67,7 @@ static const decision decisions[] = {
     {PARAM_CAMERA, "exposure", SAID, SETTINGS},
     {PARAM_CAMERA, "tone white", TONES, TONES},
 
-    {PARAM_BACKGROUND, "kind color horizon image", SAID, SKIES},
+    {PARAM_BACKGROUND, "kind color horizon image brightness", SAID, SKIES},
     {PARAM_BACKGROUND, "rain drops", NO_RAIN, SKIES},
     {PARAM_BACKGROUND, "sun_elevation_deg sun_azimuth_deg sky_type", CIE_SKY, SKIES},
     {PARAM_BACKGROUND, "ambient", SAID, NO_AMBIENT},
@@ -110,7 +110,7 @@ static const decision decisions[] = {
     {PARAM_MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence", SHEETS, SHEETS},
     {PARAM_MATERIAL, "roughness", SMOOTH, SAID},
     {PARAM_MATERIAL, "absorb_per_m absorb_spectrum absorb_data tint_distance", SAID, SAID},
-    {PARAM_MATERIAL, "scatter_per_m asymmetry", TURBID, TURBID},
+    {PARAM_MATERIAL, "scatter_per_m scatter_data asymmetry", TURBID, TURBID},
     {PARAM_MATERIAL, "texture alpha alpha_cutoff", SAID, SAID},
     {PARAM_MATERIAL, "texture_size", SAID, "only meshes have textures"},
     {PARAM_MATERIAL, "checker checker_color", SAID, "there are no chequers: the surface has its first colour"},

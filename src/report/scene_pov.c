@@ -175,11 +175,12 @@ static double brightest(const image *img)
 static status put_image_sky(const pov *v, const background *b)
 {
     static const int64_t wrap[2] = {TEXTURE_REPEAT, TEXTURE_CLAMP};
+    const double gain = v->gain * b->brightness;
     TRY(declare_image(v, "Sky", b->image_path, true, TEXTURE_BILINEAR, wrap,
                       (const int[]){b->img->width, b->img->height}));
     fputs("sky_sphere {\n  pigment {\n    ", v->out);
     pov_image_pigment(v, "Sky", "0.5 + atan2(x, z)/(2*pi)", "0.5 + atan2(y, sqrt(x*x + z*z))/pi",
-                      vec3_make(v->gain, v->gain, v->gain), brightest(b->img));
+                      vec3_make(gain, gain, gain), brightest(b->img));
     fputs("\n  }\n}\n\n", v->out);
     return STATUS_OK;
 }
