@@ -20,7 +20,8 @@
 /* ---- files, written by hand ---- */
 
 enum { UINT, HALF, FLOAT };
-enum { UNCOMPRESSED, ZIP = 3, DWAA = 8 };
+enum { UNCOMPRESSED, ZIP = 3, DWAA = 8, COMPRESSIONS };
+static const int lines_of_chunk[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 enum { FILE_MAX = 1 << 16, VERSION = 2, FLAG_TILED = 0x200 };
 
 typedef struct exr_file {
@@ -29,9 +30,10 @@ typedef struct exr_file {
 } exr_file;
 
 /* What a file has. data, display: left, top, right, bottom, inclusive. names: sorted. tile: side, 0 for scan lines.
- * step: of the channels RY and BY. values: of each channel everywhere (FLOAT), instead of value_at. */
+ * step: of the channels RY and BY. values: of each channel everywhere (FLOAT), instead of value_at.
+ * lacking: bytes that chunks lack, as if they were compressed. */
 typedef struct exr_kind {
-    int type, data[4], display[4], tile, step, compression;
+    int type, data[4], display[4], tile, step, compression, lacking;
     const char *names[8];
     const float *chromaticities, *values;
 } exr_kind;
@@ -176,7 +178,7 @@ static exr_file *make(const exr_kind *k)
     exr_file *f = calloc(1, sizeof *f);
     assert_non_null(f);
     const int width = k->data[2] - k->data[0] + 1, height = k->data[3] - k->data[1] + 1;
-    const int side = k->tile ? k->tile : width, lines = k->tile ? k->tile : 1;
+    const int side = k->tile ? k->tile : width, lines = k->tile ? k->tile : lines_of_chunk[k->compression];
     put_header(f, k);
     const size_t table = f->size;
     if (width > FILE_MAX) /* refused before its lines are read */
@@ -194,7 +196,7 @@ static exr_file *make(const exr_kind *k)
             put_number(f, 0, 4);
             const size_t bytes = put_lines(f, k, k->data[0] + x, k->data[1] + y, k->data[0] + smaller(x + side, width),
                                            k->data[1] + smaller(y + lines, height));
-            set_number(f, at, bytes, 4);
+            set_number(f, at, bytes - (size_t)k->lacking, 4);
         }
     return f;
 }
@@ -264,6 +266,20 @@ static void every_type_window_and_tile_is_read(void **state)
                         k.names[0] = "B", k.names[1] = "G", k.names[2] = "R", k.names[3] = NULL;
                     is_read(&k, alpha ? "RGBA" : "RGB");
                 }
+}
+
+/* A chunk that compression would not shrink is stored as it is. */
+static void chunks_that_were_not_compressed_are_read(void **state)
+{
+    (void)state;
+    for (int compression = UNCOMPRESSED; compression < COMPRESSIONS; compression++)
+        for (int type = UINT; type <= FLOAT; type++)
+            is_read(&(exr_kind){.type = type,
+                                .data = {0, 0, 12, 69},
+                                .display = {0, 0, 12, 69},
+                                .compression = compression,
+                                .names = {"A", "B", "G", "R"}},
+                    "RGBA");
 }
 
 #define PLAIN .type = HALF, .data = {0, 0, 5, 3}, .display = {0, 0, 5, 3}
@@ -362,7 +378,8 @@ static void what_cannot_be_shown_is_refused_with_the_reason(void **state)
     } kinds[] = {
         {{PLAIN, .names = {"X", "Z"}}, "no layer of it has channels R, G and B"},
         {{PLAIN, .names = {"RY"}, .step = 2}, "every 2 columns and 2 lines"},
-        {{PLAIN, .names = {"B", "G", "R"}, .compression = DWAA}, "DWAA"},
+        {{PLAIN, .names = {"B", "G", "R"}, .compression = DWAA, .lacking = 1}, "DWAA"},
+        {{PLAIN, .names = {"B", "G", "R"}, .compression = ZIP, .lacking = 1}, "is damaged"},
         {{.type = HALF, .data = {0, 0, 70000, 0}, .display = {0, 0, 5, 5}, .names = {"Y"}}, "70001"},
     };
     for (size_t i = 0; i < COUNT(kinds); i++) {
@@ -563,6 +580,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type_window_and_tile_is_read),
+        cmocka_unit_test(chunks_that_were_not_compressed_are_read),
         cmocka_unit_test(colours_are_chosen_by_the_rule),
         cmocka_unit_test(colours_are_divided_by_alpha),
         cmocka_unit_test(primaries_become_those_of_srgb),
