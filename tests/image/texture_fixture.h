@@ -24,7 +24,7 @@ static inline int texture_levels(const texture *t)
     return t->levels;
 }
 
-static inline void texture_size(const texture *t, int level, int *width, int *height)
+static inline void level_size(const texture *t, int level, int *width, int *height)
 {
     *width = t->level[level].width;
     *height = t->level[level].height;
