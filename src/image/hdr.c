@@ -9,6 +9,7 @@
 
 #include "base/cancel.h"
 #include "base/number.h"
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -258,7 +259,7 @@ status codec_hdr_read(const unsigned char *bytes, size_t size, image **out, diag
     TRY(image_create(job.columns, job.rows, &img, why));
     status code = read_rows(&job, img);
     if (code == STATUS_OK)
-        codec_color_apply(&job.color, (double)INFINITY, img);
+        codec_color_apply(&job.color, (double)FLT_MAX, img);
     THEN(code, codec_orient(&img, job.orientation, why));
     if (code != STATUS_OK) {
         image_destroy(img);

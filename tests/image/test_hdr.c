@@ -246,6 +246,19 @@ static void the_lines_of_the_header_apply(void **state)
               0.0557 * 2 - 0.2040 + 1.0570 / 2, 1e-3);
 }
 
+/* Finite, though the matrix enlarges the largest values that a file can have. */
+static void the_largest_values_stay_finite(void **state)
+{
+    (void)state;
+    static buffer file;
+    start(&file, "EXPOSURE=0.5\nPRIMARIES= .708 .292 .170 .797 .131 .046 .3127 .3290\n", "-Y 1 +X 1");
+    add(&file, (unsigned char[]){255, 0, 0, 255}, 4);
+    image *img = read_hdr(&file);
+    for (int c = 0; c < 3; c++)
+        assert_true(isfinite(img->pixel[c]) && img->pixel[c] >= 0.0F);
+    image_destroy(img);
+}
+
 static void wrong_headers_are_refused(void **state)
 {
     (void)state;
@@ -463,6 +476,7 @@ int main(void)
         cmocka_unit_test(long_old_runs_are_read),
         cmocka_unit_test(each_order_of_rows_and_columns_is_turned_upright),
         cmocka_unit_test(the_lines_of_the_header_apply),
+        cmocka_unit_test(the_largest_values_stay_finite),
         cmocka_unit_test(wrong_headers_are_refused),
         cmocka_unit_test(corrupted_files_are_read_or_refused),
         cmocka_unit_test(a_sky_has_its_radiance_times_its_brightness),
