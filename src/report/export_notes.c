@@ -240,7 +240,7 @@ double export_gap(const solid_shape *a, const solid_shape *b)
     const placed_shape one = shape_placed(a), other = shape_placed(b);
     const mat3 world = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}},
                *axes[] = {&world, &one.turn, &other.turn};
-    double most = -INFINITY;
+    double most = -(double)INFINITY;
     for (int k = 0; k < 18; k++) {
         const vec3 axis = placed_axis(axes[k / 6], k % 6 / 2), d = k % 2 ? vec3_scale(axis, -1.0) : axis;
         most = fmax(most, -reach(&other, vec3_scale(d, -1.0)) - reach(&one, d));

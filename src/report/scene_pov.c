@@ -113,9 +113,6 @@ static status put_image_map(const pov *v, const char *path, bool encoded, bool s
 static status declare_image(const pov *v, const char *name, const char *path, bool encoded, int64_t filter,
                             const int64_t wrap[2], const int size[2])
 {
-    static const char *const forms[] = {[TEXTURE_REPEAT] = "(%c - floor(%c))",
-                                        [TEXTURE_MIRROR] = "(1 - abs(%c - 2*floor(%c/2) - 1))",
-                                        [TEXTURE_CLAMP] = "(%c)"};
     fprintf(v->out, "#declare %s_map = pigment { ", name);
     TRY(put_image_map(v, path, encoded, filter != TEXTURE_NEAREST));
     fprintf(v->out, " }\n#declare %s_at = function { pigment { %s_map } }\n", name, name);
@@ -128,8 +125,10 @@ static status declare_image(const pov *v, const char *name, const char *path, bo
                 fprintf(v->out, "min(max(");
             if (wrap[k] == TEXTURE_CLAMP)
                 fprintf(v->out, "%c", letter);
+            else if (wrap[k] == TEXTURE_MIRROR)
+                fprintf(v->out, "1 - abs(%c - 2*floor(%c/2) - 1)", letter, letter);
             else
-                fprintf(v->out, forms[wrap[k]], letter, letter);
+                fprintf(v->out, "%c - floor(%c)", letter, letter);
             if (wrap[k] != TEXTURE_REPEAT)
                 fprintf(v->out, ", 0.5/%d), 1 - 0.5/%d)", size[k], size[k]);
             fputs(", ", v->out);
