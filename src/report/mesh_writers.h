@@ -85,9 +85,9 @@ static inline uint32_t corner_if(bool mirrored, const mesh_triangle *t, int k)
 }
 
 /* Little-endian on every machine. */
-static inline void put_bits(uint64_t bits, int bytes, FILE *stream)
+static inline void put_bits(uint64_t bits, int size, FILE *stream)
 {
-    for (int k = 0; k < bytes; k++)
+    for (int k = 0; k < size; k++)
         putc((int)(bits >> 8 * k & 0xff), stream);
 }
 
