@@ -182,7 +182,7 @@ static bool overlap_at(const pair *p, vec3 point)
     return true;
 }
 
-static line lattice_line(const pair *p, int axis, int i, int j)
+static inline line lattice_line(const pair *p, int axis, int i, int j)
 {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     vec3 low = p->low, high = p->high;
