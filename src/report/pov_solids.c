@@ -25,7 +25,7 @@ typedef struct part {
     solid_shape shape;
     bounds3 box;
     double margin;
-    bool grows;        /* its surface moves outwards by the margin, into a solid that it touches */
+    bool grows;        /* its surface moves outwards, into a solid that it touches */
     int *cut, *within; /* regions cut out of it; clear ones that it may reach into */
     size_t cut_count, within_count;
     const shading_material *texture; /* of Texture_NUMBER, if shared */
@@ -245,7 +245,7 @@ static status meet(solids *v, int low, int high)
         return STATUS_OK;
     if (gap >= -near)
         (high_clear ? b : a)->grows = true;
-    if (!high_clear)
+    if (!high_clear || (gap >= -near && !low_clear)) /* the opaque surface is in the clear solid, and met first */
         return STATUS_OK;
     const bool cuts = pov_shape_can_inset(&b->shape);
     bool room = add_number(&a->cut, &a->cut_count, cuts ? high : -high);
@@ -289,9 +289,16 @@ static status put_shape(const solids *v, int r, double inset)
     return STATUS_OK;
 }
 
+/* A solid that grows does so by two margins, and what it displaces begins one margin inside of it, which is beyond the
+ * faces that it had in common with others. */
 static double outset(const part *p)
 {
-    return p->grows ? -p->margin : 0.0;
+    return p->grows ? -2.0 * p->margin : 0.0;
+}
+
+static double cut_inset(const part *p)
+{
+    return outset(p) + p->margin;
 }
 
 static void put_mesh_name(const solids *v, int r)
@@ -368,7 +375,7 @@ static void put_interior(const solids *v, int r)
 static status put_cut(const solids *v, int r, int high)
 {
     fputs("\n  object { ", v->to.out);
-    TRY(put_shape(v, high, v->parts[high].margin));
+    TRY(put_shape(v, high, cut_inset(&v->parts[high])));
     pov_placement_write(&v->parts[high].shape, v->to.out);
     if (export_is_clear(v->to.w, r)) {
         fprintf(v->to.out, "\n    texture { Texture_%d } interior_texture { Pass }", v->parts[high].number);
