@@ -2,7 +2,7 @@
 # tori, lenses, a cup of liquid and a mesh on a chequered ground, of matt, glossy, mirroring, textured and clear
 # materials, under two or three lamps of different kinds. The same for one seed with every awk.
 #   awk -v seed=1 [-v texture=FILE.png] -f experiments/peers/table_scene.awk >scene.yaml
-# The solids stand in a grid of cells, so that only the liquid and what stands in it overlap.
+# The solids are in a grid of cells, so that only the liquid, its cup and its straw overlap.
 
 # Uniform in 0..1: the minimal standard generator, Park and Miller 1988.
 function uniform() {
