@@ -188,7 +188,7 @@ $(build)/$(soname): $(library_objects)
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(soname) $(no_undefined) -o $@ $^ $(LDFLAGS) $(all_libs)
 
-# The identity of the build (src/base/build_id.h): code of these folders can change a film or a time.
+# The identity of the build (src/base/installed.h): code of these folders can change a film or a time.
 measured_code := $(sort $(foreach room,base optics geometry measure image softbody scene render realism job,$(wildcard \
   $(addprefix src/$(room)/,*.[ch] */*.[ch] */*/*.[ch]))))
 $(build)/build_id: always $(build)/flags

@@ -16,7 +16,7 @@ wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-e
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
   src/scene/assets/mesh_file.c src/base/worker_pool.c
-wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c request.c \
+wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c library.c request.c \
   send.c watch.c) $(addprefix src/web/api/,api_studies.c api_study_% api_video.c) \
   $(addprefix src/web/session/,confine.c figures.c rescue.c studies.c study_files.c videos.c) \
   src/web/live/render_worker_thread.c,$(web))

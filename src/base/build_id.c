@@ -1,5 +1,5 @@
 /* The identity of this build, from macros that the Makefile defines. */
-#include "base/build_id.h"
+#include "base/installed.h"
 
 #ifndef CUVETTE_BUILD_ID
 #define CUVETTE_BUILD_ID "unknown"

@@ -1,5 +1,5 @@
-/* Finds files that come with the program, in an installation or in the sources around a build. The caller frees the
- * returned paths. */
+/* Which build of the program this is, and the files that come with it, in an installation or in the sources around a
+ * build. The caller frees the returned paths. */
 #pragma once
 
 #include "base/status.h"
@@ -15,3 +15,13 @@ char *installed_folder(const char *below);
 /* After an error about `path`: if there is no such file, the remedy in *why suggests the file with this ending that the
  * user may mean, next to `path` or installed in the folder `below`. Otherwise *why is unchanged. */
 void installed_suggest(const char *path, const char *below, const char *ending, diagnostic *why);
+
+/* --- build_id.c ---
+ *
+ * The identity of this build: a hash of the sources that can change a film or a time, of the compiler and its flags
+ * (Makefile, build_id). Constant; never fails. */
+
+/* 16 hex digits, equal for equal sources, compiler and flags in any folder; "unknown" without the Makefile. */
+const char *build_id(void);
+/* The commit that was checked out, abbreviated, with "+" if tracked files differed from it; "" if unknown. */
+const char *build_commit(void);

@@ -1,7 +1,7 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
-#include "base/build_id.h"
 #include "base/child.h"
 #include "base/float_environment.h"
+#include "base/installed.h"
 #include "base/json_build.h"
 #include "base/os_process.h"
 #include "cli/cli.h"

@@ -1,9 +1,9 @@
 /* The entry point of `cuvette-mpi`: commands of `cuvette` on the ranks of an MPI job. Rank 0 reads the command line and
  * writes the files; the other ranks follow it. */
-#include "base/build_id.h"
 #include "base/cancel.h"
 #include "base/child.h"
 #include "base/float_environment.h"
+#include "base/installed.h"
 #include "base/json_build.h"
 #include "base/text.h"
 #include "cli/cli.h"

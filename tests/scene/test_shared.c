@@ -12,7 +12,6 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/model/work.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

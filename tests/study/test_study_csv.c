@@ -1,6 +1,6 @@
 /* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
 #include "base/csv.h"
-#include "study/rows/csv_layout.h"
+#include "study/rows/table.h"
 #include "study_fixture.h"
 
 static void csv_fields_round_trip(void **state)

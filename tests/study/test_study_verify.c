@@ -1,7 +1,7 @@
 /* Tests of the checks of rows: every edit, removal, duplication and swap is detected, in every column; rows of unlike
  * environments are never pooled. */
-#include "base/build_id.h"
 #include "base/csv.h"
+#include "base/installed.h"
 #include "random_stream.h"
 #include "rows_fixture.h"
 #include "study/rows/checksum.h"

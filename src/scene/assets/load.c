@@ -13,7 +13,6 @@
 #include "scene/model/objects.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
-#include "scene/model/work.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,6 @@
 #include "scene/file/write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/model/work.h"
 
 #include <stdlib.h>
 #include <string.h>

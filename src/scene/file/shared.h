@@ -8,7 +8,7 @@
 #include "image/image.h"
 #include "scene/model/open.h"
 
-/* Limits: bytes of the text; pixels; triangles; rays (scene/model/work.h); steps times masses of slimes. */
+/* Limits: bytes of the text; pixels; triangles; rays (scene/model/scene.h); steps times masses of slimes. */
 enum { SHARED_TEXT_MAX = 1 << 20, SHARED_PIXELS_MAX = 16777216, SHARED_TRIANGLES_MAX = 4000000 };
 #define SHARED_RAYS_MAX 1e12
 #define SHARED_MOTION_MAX 1e10

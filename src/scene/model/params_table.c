@@ -1,6 +1,5 @@
 /* The parameter table: a new parameter is a row here, and a field in the struct of its group (render_settings.h,
  * material.h, lights.h, solids.h, view_settings.h). */
-#include "scene/model/integrators.h"
 #include "scene/model/lights.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
@@ -8,32 +7,6 @@
 
 #include <stddef.h>
 #include <string.h>
-
-/* ---- the words and traits of integrators.h ---- */
-
-#define WORD(name, word, ...) #word,
-const char *const integrator_words[] = {INTEGRATORS(WORD) NULL};
-
-#define TRAITS(name, word, ...) {__VA_ARGS__},
-const integrator_traits integrator_table[] = {INTEGRATORS(TRAITS)};
-
-const char *integrator_with_layers(void)
-{
-    for (int i = 0; integrator_words[i]; i++)
-        if (integrator_table[i].layers)
-            return integrator_words[i];
-    return NULL;
-}
-
-const char *const layer_words[] = {LAYERS(WORD) NULL};
-
-#define CHANNELS(name, word, channels) channels,
-const int layer_channels[LAYER_COUNT] = {LAYERS(CHANNELS)};
-#undef WORD
-#undef TRAITS
-#undef CHANNELS
-
-/* ---- other choices ---- */
 
 static const char *const off_on[] = {"off", "on", NULL};
 static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49", "64", NULL};

@@ -58,3 +58,18 @@ const light *scene_sun(const scene *s);
 /* The unit vector towards the background's sun: the first light of kind sun, else by the background's sun_elevation_deg
  * and sun_azimuth_deg. */
 vec3 scene_to_sun(const scene *s);
+
+/* --- the work that the parameters imply, for limits before anything is loaded or rendered: work.c --- */
+
+/* The number of triangles of generated meshes; a mesh from a file counts as 12, because its size is unknown. */
+double scene_planned_triangles(const scene *s);
+
+/* The number of camera rays, times wavelengths. */
+double scene_camera_rays(const render_settings *r);
+
+/* An upper bound of the number of rays, without shadow rays. A level of a tree has at most twice the rays of the level
+ * above it, and at most 1 / min_weight, because the weights of a level sum to at most 1. */
+double scene_rays_bound(const render_settings *r);
+
+/* The work of a slime: steps to its time_s, times masses. */
+double slime_work(const mesh_entry *m);

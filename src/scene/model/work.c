@@ -1,5 +1,4 @@
 /* Estimates the work of a scene from its parameters (work.h). */
-#include "scene/model/work.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

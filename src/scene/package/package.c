@@ -1,8 +1,8 @@
 /* Writes and reads packages: their head and hash, packages in memory, and the hierarchies that they have. */
 #include "scene/package/package.h"
 #include "base/array.h"
-#include "base/build_id.h"
 #include "base/hash.h"
+#include "base/installed.h"
 #include "geometry/hierarchy/hierarchy.h"
 #include "scene/file/write.h"
 #include "scene/model/face_materials.h"

@@ -4,7 +4,7 @@
  * their hierarchies, the materials in mesh files, and the quantities of slimes. The unpacked scene has the same film,
  * counters and mesh report, and its frames build no hierarchy that is in the package.
  *
- * A package is for processes of the same build (base/build_id.h): another build refuses it. It is in native byte order
+ * A package is for processes of the same build (base/installed.h): another build refuses it. It is in native byte order
  * and is not a file format. The receiver trusts nothing: sizes, indices and numbers are checked, and a hash at the end
  * covers all bytes, against errors and not against an adversary.
  *

@@ -1,6 +1,6 @@
 /* Converts rows between headers of different versions of the program, and widens files by missing columns. */
-#include "study/rows/csv_layout.h"
 #include "base/file.h"
+#include "study/rows/table.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* Reads the facts of a run's environment from the files of the system, and hashes them into its key. */
 #include "study/rows/environment.h"
-#include "base/build_id.h"
 #include "base/control_group.h"
 #include "base/hash.h"
+#include "base/installed.h"
 #include "base/os_process.h"
 #include "base/status.h"
 #include "measure/instruction_dumps.h"

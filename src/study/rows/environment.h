@@ -1,7 +1,7 @@
 /* The environment of a run: everything that times depend on, except the scene. Rows of unlike environments are never
  * pooled. The key is a hash of eight facts: the machine (a salted hash of its id), the processor's model and microcode,
  * SMT, the frequency governor, the limits of the control group and of the affinity mask, the instruction set, and the
- * build (base/build_id.h). Fixed-size values; nothing to release. Unknown facts are "unknown". */
+ * build (base/installed.h). Fixed-size values; nothing to release. Unknown facts are "unknown". */
 #pragma once
 
 #include "base/isa.h"

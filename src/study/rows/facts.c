@@ -1,7 +1,7 @@
 /* Collects facts of the machine, the program, the study and a run as JSON, and reads and writes files of facts. */
 #include "study/rows/facts.h"
-#include "base/build_id.h"
 #include "base/file.h"
+#include "base/installed.h"
 #include "base/json_build.h"
 #include "base/number.h"
 #include "base/text.h"

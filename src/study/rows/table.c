@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "study/rows/csv_layout.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

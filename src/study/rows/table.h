@@ -2,11 +2,11 @@
  * one process at a time (flock). The incomplete line (base/csv.h) that a killed process or a power cut left is moved
  * aside when the file is opened again: it is appended to x.torn.csv, on disk, before x.csv is truncated to its last
  * complete line. Nothing else is ever removed or changed; a file with other columns gets the missing ones before the
- * first new row (study/rows/csv_layout.h). Ownership: table_close releases a table. Errors name the file and do not
+ * first new row (below). Ownership: table_close releases a table. Errors name the file and do not
  * damage it. */
 #pragma once
 
-#include "base/status.h"
+#include "base/csv.h"
 
 typedef struct table table;
 
@@ -23,3 +23,29 @@ status table_append(table *t, const char *lines, size_t size, diagnostic *why);
 status table_set_aside(table *t, size_t offset, diagnostic *why);
 
 void table_close(table *t);
+
+/* --- csv_layout.c ---
+ *
+ * Conversion of rows to another header: columns are identified by name, so files of other versions of the program, with
+ * more, fewer or reordered columns, can be read, merged and continued. Ownership: csv_layout_destroy releases a
+ * layout. */
+
+typedef struct csv_layout csv_layout;
+
+/* Converts rows under the header line `from` to rows under the header line `to`. */
+status csv_layout_create(const char *from, const char *to, csv_layout **out, diagnostic *why);
+void csv_layout_destroy(csv_layout *l);
+
+/* Appends complete lines to out, converted field by field; columns that `from` does not have are "NA". */
+status csv_layout_place(const csv_layout *l, const char *lines, size_t size, csv_buffer *out, diagnostic *why);
+
+/* The header line extended by the columns of `more` that it lacks, and their number; fresh memory, NULL if memory runs
+ * out or quotes are invalid. */
+char *csv_header_extend(const char *header, const char *more, size_t *added);
+
+/* Prepares a file of another version of the program for new rows. Existing values are never changed: missing columns
+ * are appended with the value "NA", in a new file that atomically replaces the old one. The file has only complete
+ * lines and is locked by the caller; afterwards it has all columns of header. *layout, owned by the caller, converts
+ * lines under header to the file's columns; NULL if they are equal. *replaced: the path refers to a new file, which is
+ * not locked. */
+status csv_layout_settle(const char *path, const char *header, csv_layout **layout, bool *replaced, diagnostic *why);

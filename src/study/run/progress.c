@@ -1,8 +1,8 @@
 /* Indexes the measured repetitions of a study by cell, and displays its progress. */
 #include "study/run/progress.h"
 #include "base/array.h"
-#include "base/build_id.h"
 #include "base/hash.h"
+#include "base/installed.h"
 #include "base/isa.h"
 #include "measure/clock.h"
 #include "measure/statistics.h"

@@ -1,6 +1,6 @@
 /* Plans a study as an array job of Slurm: what its parts need, and its script. */
 #include "study/run/slurm.h"
-#include "base/build_id.h"
+#include "base/installed.h"
 #include "base/text.h"
 #include "scene/model/scene.h"
 #include "study/rows/row_files.h"

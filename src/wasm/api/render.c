@@ -9,7 +9,6 @@
 #include "scene/model/integrators.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"
-#include "scene/model/work.h"
 #include "scene/package/package.h"
 #include "wasm/api/results.h"
 #include "wasm/exports.h"

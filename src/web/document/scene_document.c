@@ -4,7 +4,6 @@
 #include "report/json.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "scene/model/work.h"
 #include "web/document/scene_document_private.h"
 
 #include <stdio.h>

@@ -1,13 +1,10 @@
-/* Loads libmicrohttpd; starts and stops the HTTP server. */
+/* Start and stop of the HTTP server. */
 #include "web/http/http_library.h"
 
 #include <arpa/inet.h>
-#include <dlfcn.h>
 #include <errno.h>
 #include <netinet/in.h>
-#include <pthread.h>
 #include <signal.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,34 +12,6 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* ---- the library ---- */
-
-mhd_functions mhd;
-static bool library_loaded;
-static char library_reason[256];
-
-static void load_library(void)
-{
-    void *library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);
-    library_loaded = library != NULL;
-    const char *said = library ? NULL : dlerror(); /* a text: the loader sets no errno */
-    snprintf(library_reason, sizeof library_reason, "%s", said ? said : "a function is missing");
-#define FIND(name) library_loaded = library_loaded && (*(void **)&mhd.name = dlsym(library, "MHD_" #name));
-    EACH_MHD_FUNCTION(FIND)
-}
-
-status http_library_load(diagnostic *why)
-{
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, load_library);
-    return library_loaded
-               ? STATUS_OK
-               : diagnose(why, STATUS_FAILURE, "install libmicrohttpd12, or free memory and open files",
-                          "the laboratory needs the library libmicrohttpd, which cannot be loaded: %s", library_reason);
-}
-
-/* ---- the server ---- */
 
 /* Opens the socket, because libmicrohttpd would let another program share its port (SO_REUSEPORT). */
 static status listen_at(int port, int backlog, int *out, diagnostic *why)

@@ -1,7 +1,7 @@
 /* The choice of the render passes from the measured speed, and the steps of the adaptive resolution, with
  * hysteresis. */
 #include "web/live/passes.h"
-#include "scene/model/work.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 
