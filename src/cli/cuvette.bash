@@ -66,6 +66,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --tasks | --node-type | --memory | --factor | --sbatch) COMPREPLY=() ;;
     --template) _cuvette_files 'slurm|sh' ;;
     --published) _cuvette_files 'csv' ;;
+    --export) _cuvette_files 'pov|gltf|glb' ;;
     --curve)
         _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges mirror apparent-depth prism \
             rainbow plates malus coin arrow soap
@@ -170,7 +171,7 @@ _cuvette()
         ;;
     scene)
         if [[ $current == -* ]]; then
-            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --from --check --list --link --all --output --memory-limit --help --usage --version
+            _cuvette_words --add --set --move --turn --scale --rename --delete --title --new --from --check --list --link --export --all --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

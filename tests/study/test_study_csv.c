@@ -26,18 +26,18 @@ static void csv_fields_round_trip(void **state)
     csv_buffer_free(&line);
     char path[400];
     fixture_path(f, "t.csv", path);
-    csv *table = NULL;
-    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
-    assert_int_equal(table->column_count, 3);
-    assert_int_equal(table->row_count, 2);
-    assert_int_equal(csv_column(table, "a,b"), 1);
-    assert_int_equal(csv_column(table, "say \"it\""), 2);
-    assert_int_equal(csv_column(table, "b"), -1);
-    assert_true(csv_field_real(table, 0, 1) == 0.1);
-    assert_true(isnan(csv_field_real(table, 0, 0)));
-    assert_true(isnan(csv_field_real(table, 0, -1)));
-    assert_string_equal(csv_field(table, 1, 2), "00000000000000ab");
-    csv_destroy(table);
+    csv *sheet = NULL;
+    assert_int_equal(csv_read(path, &sheet, NULL), STATUS_OK);
+    assert_int_equal(sheet->column_count, 3);
+    assert_int_equal(sheet->row_count, 2);
+    assert_int_equal(csv_column(sheet, "a,b"), 1);
+    assert_int_equal(csv_column(sheet, "say \"it\""), 2);
+    assert_int_equal(csv_column(sheet, "b"), -1);
+    assert_true(csv_field_real(sheet, 0, 1) == 0.1);
+    assert_true(isnan(csv_field_real(sheet, 0, 0)));
+    assert_true(isnan(csv_field_real(sheet, 0, -1)));
+    assert_string_equal(csv_field(sheet, 1, 2), "00000000000000ab");
+    csv_destroy(sheet);
 }
 
 static diagnostic reason; /* of rows_of */
@@ -47,18 +47,18 @@ static int rows_of(const fixture *f, const char *text, long *line)
 {
     char path[400];
     reason = (diagnostic){0};
-    csv *table = NULL;
+    csv *sheet = NULL;
     fixture_write(f, "t.csv", text);
     fixture_path(f, "t.csv", path);
-    status code = csv_read(path, &table, &reason);
-    int rows = code == STATUS_OK ? (int)table->row_count : -1;
+    status code = csv_read(path, &sheet, &reason);
+    int rows = code == STATUS_OK ? (int)sheet->row_count : -1;
     if (line)
         *line = reason.line;
-    csv_destroy(table);
+    csv_destroy(sheet);
     return rows;
 }
 
-/* The same table as people, spreadsheets and Python write it, and what it is in the form of this program. */
+/* The same sheet as people, spreadsheets and Python write it, and what it is in the form of this program. */
 static void files_of_other_programs_are_read(void **state)
 {
     const fixture *f = *state;
@@ -74,30 +74,30 @@ static void files_of_other_programs_are_read(void **state)
                                           "a,b\n1,x\n2,y\n\n",
                                           "a,b\r\n1,x\r\n2,y\r\n\r\n\r\n"};
     char path[400];
-    csv *table;
+    csv *sheet;
     fixture_path(f, "t.csv", path);
     for (size_t i = 0; i < sizeof written / sizeof *written; i++) {
         fixture_write(f, "t.csv", written[i]);
-        assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
-        assert_true(table->row_count == 2 && table->column_count == 2 && !table->torn);
-        assert_true(csv_column(table, "a") == 0 && csv_column(table, "b") == 1);
-        assert_string_equal(csv_field(table, 1, 1), "y");
-        assert_string_equal(table->raw, own);
-        assert_int_equal(table->mended, i > 0);
-        csv_destroy(table);
+        assert_int_equal(csv_read_any(path, NULL, &sheet, NULL), STATUS_OK);
+        assert_true(sheet->row_count == 2 && sheet->column_count == 2 && !sheet->torn);
+        assert_true(csv_column(sheet, "a") == 0 && csv_column(sheet, "b") == 1);
+        assert_string_equal(csv_field(sheet, 1, 1), "y");
+        assert_string_equal(sheet->raw, own);
+        assert_int_equal(sheet->mended, i > 0);
+        csv_destroy(sheet);
     }
     fixture_write(f, "t.csv", "a,b\n1,x\n2");
-    assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
-    assert_true(table->row_count == 1 && table->torn);
-    csv_destroy(table);
+    assert_int_equal(csv_read_any(path, NULL, &sheet, NULL), STATUS_OK);
+    assert_true(sheet->row_count == 1 && sheet->torn);
+    csv_destroy(sheet);
     fixture_write(f, "t.csv", "a,b"); /* the program was killed while it wrote the header */
-    assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
-    assert_true(table->row_count == 0 && !table->header && table->torn);
-    csv_destroy(table);
+    assert_int_equal(csv_read_any(path, NULL, &sheet, NULL), STATUS_OK);
+    assert_true(sheet->row_count == 0 && !sheet->header && sheet->torn);
+    csv_destroy(sheet);
     fixture_write(f, "t.csv", "a,b\n1,\"x\ry\"\n"); /* a carriage return within a line is a character */
-    assert_int_equal(csv_read_any(path, NULL, &table, NULL), STATUS_OK);
-    assert_string_equal(csv_field(table, 0, 1), "x\ry");
-    csv_destroy(table);
+    assert_int_equal(csv_read_any(path, NULL, &sheet, NULL), STATUS_OK);
+    assert_string_equal(csv_field(sheet, 0, 1), "x\ry");
+    csv_destroy(sheet);
 }
 
 /* Rows are what the program wrote: another form is named. */
@@ -105,16 +105,16 @@ static void rows_in_another_form_are_named(void **state)
 {
     const fixture *f = *state;
     char path[400];
-    csv *table;
+    csv *sheet;
     diagnostic why = {0};
     fixture_path(f, "t.csv", path);
     fixture_write(f, "t.csv", "a,b\r\n1,x\r\n");
-    assert_int_equal(csv_read_rows(path, NULL, &table, &why), STATUS_BAD_INPUT);
+    assert_int_equal(csv_read_rows(path, NULL, &sheet, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "CR LF"));
     fixture_write(f, "t.csv",
                   "\xEF\xBB\xBF"
                   "a,b\n1,x\n");
-    assert_int_equal(csv_read_rows(path, NULL, &table, &why), STATUS_BAD_INPUT);
+    assert_int_equal(csv_read_rows(path, NULL, &sheet, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "byte order mark"));
 }
 
@@ -168,17 +168,17 @@ static void zero_bytes_are_reported_as_damage(void **state)
     FILE *file = fopen(path, "w");
     fwrite("a,b\n\0\0\0\0\n1,2\n", 1, 13, file); /* not the last line, which a power cut can have left */
     fclose(file);
-    csv *table = NULL;
-    assert_int_equal(csv_read(path, &table, NULL), STATUS_BAD_INPUT);
-    assert_null(table);
+    csv *sheet = NULL;
+    assert_int_equal(csv_read(path, &sheet, NULL), STATUS_BAD_INPUT);
+    assert_null(sheet);
 }
 
 static void a_missing_file_gives_no_table(void **state)
 {
     (void)state;
-    csv *table = (csv *)1;
-    assert_int_equal(csv_read("/nowhere/t.csv", &table, NULL), STATUS_OK);
-    assert_null(table);
+    csv *sheet = (csv *)1;
+    assert_int_equal(csv_read("/nowhere/t.csv", &sheet, NULL), STATUS_OK);
+    assert_null(sheet);
 }
 
 /* Fields move to the columns of their names; a line of another number of fields is refused, and nothing follows. */
