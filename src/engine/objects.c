@@ -236,6 +236,13 @@ static double *pairs_of(const double *lambda_nm, const double *values, size_t co
     return point;
 }
 
+/* The diagnostic with the name of the data before it. */
+static status of_data(const char *name, status code, diagnostic *why)
+{
+    const diagnostic bad = *why;
+    return code == STATUS_BAD_INPUT ? diagnose(why, code, bad.remedy, "%.80s: %s", name, bad.what) : code;
+}
+
 cuvette_status cuvette_scene_add_values(cuvette_scene *s, const char *name, const double *lambda_nm,
                                         const double *values, const double *extinction, size_t count,
                                         cuvette_diagnostic *why)
@@ -246,8 +253,10 @@ cuvette_status cuvette_scene_add_values(cuvette_scene *s, const char *name, cons
     double *first = pairs_of(lambda_nm, values, count),
            *second = extinction ? pairs_of(lambda_nm, extinction, count) : NULL;
     status code = first && !extinction == !second ? STATUS_OK : out_of_memory(&inner);
-    THEN(code, optical_data_create(NULL, (optical_curve){first, count}, (optical_curve){second, second ? count : 0},
-                                   &made, &inner));
+    THEN(code, of_data(name,
+                       optical_data_create(NULL, (optical_curve){first, count},
+                                           (optical_curve){second, second ? count : 0}, &made, &inner),
+                       &inner));
     free(first);
     free(second);
     THEN(code, scene_add(s->model, PARAM_DATA, name, &index, &inner));
