@@ -286,10 +286,7 @@ export function createFiles(lab, choice) {
         () => setFile(`${object.name}.file`, 'Image', 'images', 'The folder contains no images.'),
       ]);
     if (object.kind === 'data')
-      parts.push([
-        'Choose a data file …',
-        () => setFile(`${object.name}.file`, 'Optical data', 'data', NO_DATA),
-      ]);
+      parts.push(['Choose a data file …', () => setFile(`${object.name}.file`, 'Optical data', 'data', NO_DATA)]);
     if (object.kind === 'mesh' && of('file'))
       parts.push([
         'Choose a model …',
