@@ -479,7 +479,7 @@ static bool try_while_rendering(void *context, double share)
     watcher *w = context;
     cuvette_diagnostic why;
     cuvette_motion *second;
-    if (share > 0.0)
+    if (share > 0.0 || w->calls > 0) /* before the first ray it is called as often as it takes */
         return true;
     assert_int_equal(cuvette_motion_advance(w->m, 1.0, &why), CUVETTE_BUSY);
     assert_int_equal(cuvette_motion_create(w->s, &second, &why), CUVETTE_BUSY);
