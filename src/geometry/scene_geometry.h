@@ -38,10 +38,8 @@ enum {
 
 /* The two sides of a lens (primitives/lens_kernel.c and asphere_kernel.c). */
 typedef struct lens_sides {
-    double curvature[2];    /* 1 / radius, signed; 0: flat */
-    double conic[2];        /* conic constants; 0: spherical */
-    double even[2][3];      /* coefficients of the 4th, 6th and 8th power of the radius; 0: a conic */
-    double low[2], high[2]; /* of a side with coefficients: its least and largest height above its vertex */
+    double curvature[2]; /* 1 / radius, signed; 0: flat */
+    double conic[2];     /* conic constants; 0: spherical */
 } lens_sides;
 
 /* The files in primitives/ define each kind and the numbers of its faces. The faces of meshes are numbered differently:
@@ -60,7 +58,9 @@ typedef struct primitive {
     double second_radius;                    /* a second radius, for kinds that have one */
     int sides;                               /* number of equal sides around the axis; 0 for none */
     const vec3 *normals;                     /* of the sides; owned by the scene geometry */
-    const struct capillary_profile *surface; /* of a liquid with a meniscus; owned by the scene geometry */
+    /* The surface of a liquid (capillary_profile), or what the sides of a lens have besides conics (lens_details); NULL
+     * for none. Owned by the scene geometry. */
+    const void *details;
     int64_t first_face;
     int rows;           /* number of its scratch rows: the most intervals that a ray can have in it */
     int priority_index; /* of its region */
@@ -108,8 +108,8 @@ typedef struct scene_geometry {
     struct instance_set *meshes;    /* all meshes; NULL without meshes */
     vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
-    struct capillary_profile *surfaces; /* of all liquids with a meniscus */
-    int surface_count;
+    char *details;                  /* of all primitives that have some */
+    size_t detail_bytes;
 } scene_geometry;
 
 /* Whether a region reduces the light along a shadow ray. With solid_shadows every region does. */

@@ -558,7 +558,8 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
         law_solid *one = &w.solid[i];
         one->gold = false;
         one->film_nm = one->extraordinary_ior = one->shape.capillary_length = 0.0;
-        for (int k = 0; k < 3; k++)
+        one->shape.diameter_1 = one->shape.diameter_2 = 0.0;
+        for (int k = 0; k < 9; k++)
             one->shape.even_1[k] = one->shape.even_2[k] = 0.0;
     }
     for (int i = 0; i < w.light_count; i++)

@@ -1,5 +1,6 @@
-/* A lens with a side that is an even asphere (asphere.h): x^2 + z^2 <= radius^2 between two sides, each of which is an
- * asphere or a conic. Faces: 0 rim, 1 the side at 0, 2 the side at top.
+/* A lens with a side that is an even asphere (asphere.h), or is smaller than the rim: x^2 + z^2 <= radius^2 between two
+ * sides, each of which is an asphere or a conic up to a clear radius, and a level ring beyond it. Faces: 0 rim, 1 the
+ * side at 0, 2 the side at top, 3 and 4 the rings around them.
  *
  * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
  * derivative is bounded by asphere_bend. On an interval of half width h about m with |f''| <= K:
@@ -150,7 +151,8 @@ static asphere_part part_of_asphere(const primitive *p, int k, local_ray r, inte
                             .from = from,
                             .least = 0x1p-55 * p->radius * sqrt(inverse),
                             .touch = 0x1p-54 * p->radius};
-    const double low = p->lens.low[k], high = p->lens.high[k], spare = 0x1p-20 * (high - low) + 0x1p-40 * p->radius;
+    const lens_details *d = p->details;
+    const double low = d->low[k], high = d->high[k], spare = 0x1p-20 * (high - low) + 0x1p-40 * p->radius;
     const interval near = interval_of_slab(l.base.y, r.dy, low - spare, high + spare);
     double a = greater(rim.in - from, near.in), b = lesser(rim.out - from, near.out);
     if (starts_on)
@@ -184,6 +186,52 @@ static asphere_part part_of_conic(const primitive *p, int k, local_ray r, interv
     return part_of_changes(e.concave != 0, ends, set.in < set.out ? 2 : 0);
 }
 
+/* Adds to a part, in order, what its intervals and `more` have in common; the ends of intervals that touch are no
+ * crossings. */
+static void extend_part(asphere_part *part, interval within, const interval *more, int count)
+{
+    for (int i = 0; i < count; i++) {
+        const interval both = interval_both(within, more[i]);
+        if (!(both.in < both.out))
+            continue;
+        if (part->count > 0 && both.in <= part->list[part->count - 1].out)
+            part->list[part->count - 1].out = both.out;
+        else if (part->count <= ASPHERE_CHANGES / 2)
+            part->list[part->count++] = both;
+    }
+}
+
+/* The part of a line on the inner side of side k within the interval `bounds`, of its clear cylinder or the rim. */
+static asphere_part part_within(const primitive *p, int k, local_ray r, interval bounds, int64_t at)
+{
+    const even_asphere e = lens_asphere(p, k);
+    return asphere_has_terms(&e) ? part_of_asphere(p, k, r, bounds, at == 1 + k)
+                                 : part_of_conic(p, k, r, bounds, mask_same(at, 1 + k));
+}
+
+/* The same with the ring around it: within the clear cylinder the side counts, and outside it the ring's plane. */
+static asphere_part part_of_side(const primitive *p, int k, local_ray r, interval rim, int64_t at)
+{
+    const double clear = lens_clear(p, k);
+    if (clear == HUGE_VAL)
+        return part_within(p, k, r, rim, at);
+    const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, 1.0), cross = r.x * r.dz - r.z * dx,
+                 middle = r.x * dx + r.z * r.dz;
+    const interval core = interval_of_quadric(quadric_cross(middle, 1.0 / a, a * clear * clear - cross * cross, 0));
+    const double up = k == 0 ? 1.0 : -1.0, u = at == 3 + k ? 0.0 : up * (r.y - lens_ring(p, k));
+    const interval plane = half_space(u, inverse_of_component(up * r.dy));
+    asphere_part part = {0, {{0.0, 0.0}}};
+    if (!(core.in < core.out)) {
+        extend_part(&part, rim, &plane, 1);
+        return part;
+    }
+    const asphere_part side = part_within(p, k, r, core, at);
+    extend_part(&part, (interval){-HUGE_VAL, core.in}, &plane, 1);
+    extend_part(&part, core, side.list, side.count);
+    extend_part(&part, (interval){core.out, HUGE_VAL}, &plane, 1);
+    return part;
+}
+
 /* The chords of a line; returns their number. at: the face that it starts on. */
 static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chords[CHORDS_MAX])
 {
@@ -192,11 +240,8 @@ static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chor
     if (!(rim.in < rim.out))
         return 0;
     asphere_part part[2];
-    for (int k = 0; k < 2; k++) {
-        const even_asphere e = lens_asphere(p, k);
-        part[k] = asphere_has_terms(&e) ? part_of_asphere(p, k, r, rim, at == 1 + k)
-                                        : part_of_conic(p, k, r, rim, mask_same(at, 1 + k));
-    }
+    for (int k = 0; k < 2; k++)
+        part[k] = part_of_side(p, k, r, rim, at);
     int count = 0;
     for (int i = 0; i < part[0].count; i++)
         for (int k = 0; k < part[1].count; k++) {
@@ -217,7 +262,7 @@ static void one(const primitive *p, const ray_batch *rays, int i, bool inside, c
     const int count = cross_lens(p, r, at, chords);
     const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
     const crossings_of_one ahead =
-        crossings_of_chords(chords, count, at >= 0 && at <= 2, inside, 0x1p-20 * p->radius / length);
+        crossings_of_chords(chords, count, at >= 0 && at <= 4, inside, 0x1p-20 * p->radius / length);
     intervals_of_crossings(&ahead, inside, found);
 }
 
@@ -246,6 +291,15 @@ static side_point point_on_asphere(const primitive *p, int k, vec3 q)
                         .apart = magnitude(level) * inverse};
 }
 
+/* A side counts within its clear radius, its ring beyond it: elsewhere they are `outside` farther than they are. */
+static side_point point_on_ring(const primitive *p, int k, vec3 q, double from_axis, double outside)
+{
+    const double y = lens_clear(p, k) < HUGE_VAL ? lens_ring(p, k) : HUGE_VAL;
+    return (side_point){.point = vec3_make(q.x, y, q.z),
+                        .normal = vec3_make(0.0, k == 0 ? -1.0 : 1.0, 0.0),
+                        .apart = magnitude(q.y - y) + (from_axis < lens_clear(p, k) ? outside : 0.0)};
+}
+
 static side_point point_on(const primitive *p, int k, vec3 q)
 {
     const even_asphere e = lens_asphere(p, k);
@@ -264,14 +318,18 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     (void)general, (void)at;
     const double from_axis = sqrt(q.x * q.x + q.z * q.z), along = leaving ? 1.0 : -1.0;
     const double x = q.x / from_axis, z = q.z / from_axis, outside = 0x1p-30 * p->radius;
-    const side_point faces[3] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
-                                  .normal = vec3_make(x, 0.0, z),
-                                  .apart = magnitude(from_axis - p->radius)},
-                                 point_on(p, 0, q),
-                                 point_on(p, 1, q)};
-    int best = 0;
+    side_point faces[5] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
+                            .normal = vec3_make(x, 0.0, z),
+                            .apart = magnitude(from_axis - p->radius)},
+                           point_on(p, 0, q),
+                           point_on(p, 1, q)};
+    int best = 0, count = 3;
     double least = HUGE_VAL;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 2 && p->details; k++) {
+        faces[count++] = point_on_ring(p, k, q, from_axis, outside);
+        faces[1 + k].apart += from_axis > lens_clear(p, k) ? outside : 0.0;
+    }
+    for (int k = 0; k < count; k++) {
         const double turned = vec3_dot(vec3_make(r.dx, r.dy, r.dz), faces[k].normal);
         const double cost = faces[k].apart + (turned * along > 0.0 ? 0.0 : outside);
         if (cost < least)

@@ -15,6 +15,11 @@
 
 enum { CAPILLARY_CHORDS = 2 };
 
+static const capillary_profile *surface_of(const primitive *p)
+{
+    return p->details;
+}
+
 /* A line, with t measured from its base: its point nearest to the surface's middle or, if it starts on the surface, its
  * start. */
 typedef struct surface_line {
@@ -95,7 +100,7 @@ static interval positive_within(const surface_line *l, interval tube, interval n
 
 static interval surface_interval(const primitive *p, local_ray r, interval tube, int64_t at)
 {
-    const capillary_profile *h = p->surface;
+    const capillary_profile *h = p->details;
     const bool starts_on = mask_same(at, 2) != 0;
     const double middle = 0.5 * (h->low + h->high), length2 = r.dx * r.dx + r.dy * r.dy + r.dz * r.dz;
     const double from = starts_on ? 0.0 : -(r.x * r.dx + (r.y - middle) * r.dy + r.z * r.dz) / length2;
@@ -116,7 +121,7 @@ static interval surface_interval(const primitive *p, local_ray r, interval tube,
 /* The chords of a line; returns their number. */
 static int cross_liquid(const primitive *p, local_ray r, int64_t at, interval chords[CHORDS_MAX])
 {
-    const capillary_profile *h = p->surface;
+    const capillary_profile *h = p->details;
     const double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, 1.0), inverse_a = 1.0 / a;
     const double inverse_y = inverse_of_component(r.dy), cross = r.x * r.dz - r.z * dx;
     const int64_t on_side = mask_same(at, 0), on_bottom = mask_same(at, 1), on_ring = mask_same(at, 3);
@@ -177,7 +182,7 @@ static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general, (void)at;
-    const capillary_profile *h = p->surface;
+    const capillary_profile *h = p->details;
     const double rho2 = q.x * q.x + q.z * q.z, rho = sqrt(rho2), along = leaving ? 1.0 : -1.0;
     const bool within = rho <= h->radius;
     double by_rho2;
@@ -211,7 +216,7 @@ static void points(const primitive *__restrict p, const ray_batch *rays, const d
 
 static bool contains(const primitive *p, vec3 q)
 {
-    return capillary_contains(p->surface, p->radius, q.x * q.x + q.z * q.z, q.y);
+    return capillary_contains(surface_of(p), p->radius, q.x * q.x + q.z * q.z, q.y);
 }
 
 static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
@@ -226,8 +231,8 @@ static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
 static int flats(const primitive *p, flat_face flat[FLATS_MAX])
 {
     flat[0] = (flat_face){1, 1, 0.0, -1.0};
-    flat[1] = (flat_face){3, 1, p->surface->wall, 1.0};
-    return p->surface->radius < p->radius ? 2 : 1;
+    flat[1] = (flat_face){3, 1, surface_of(p)->wall, 1.0};
+    return surface_of(p)->radius < p->radius ? 2 : 1;
 }
 
 /* As on a cylinder, up to the contact with the wall; the surface as seen along the axis. */
@@ -235,7 +240,7 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
 {
     const double r = p->radius, diameter = 2.0 * r;
     if (face == 0)
-        return mapping_around(q.x, q.z, r, q.y, p->surface->wall, size);
+        return mapping_around(q.x, q.z, r, q.y, surface_of(p)->wall, size);
     return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, diameter, diameter, size);
 }
 

@@ -1,5 +1,6 @@
 /* A side of a lens that is a conic of revolution, and common code of lenses with and without aspheric coefficients; for
- * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top. Pure; cannot fail.
+ * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top, 3 and 4 the level rings around them. Pure; cannot
+ * fail.
  *
  * The conic's equation is c (x^2 + z^2 + (1 + k) u^2) - 2 u = 0, with u measured from its vertex towards its centre of
  * curvature; c = 0 is a flat side. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid; only
@@ -112,21 +113,34 @@ ALWAYS_INLINE side_point point_on_side(const lens_side *e, vec3 q)
 
 static inline even_asphere lens_asphere(const primitive *p, int k)
 {
-    const lens_sides *l = &p->lens;
-    return (even_asphere){l->curvature[k], 1.0 + l->conic[k], {l->even[k][0], l->even[k][1], l->even[k][2]}};
+    const lens_details *d = p->details;
+    return asphere_of(p->lens.curvature[k], p->lens.conic[k], d ? d->even[k] : NULL);
+}
+
+/* The radius up to which a side reaches, infinite without a ring. */
+static inline double lens_clear(const primitive *p, int k)
+{
+    const lens_details *d = p->details;
+    return d ? d->clear[k] : HUGE_VAL;
 }
 
 static inline double lens_height(const primitive *p, int k, double rho2)
 {
     const even_asphere e = lens_asphere(p, k);
-    return (k == 0 ? 0.0 : p->top) + asphere_sag(&e, rho2);
+    const double clear = lens_clear(p, k);
+    return (k == 0 ? 0.0 : p->top) + asphere_sag(&e, lesser(rho2, clear * clear));
+}
+
+/* The height of the ring around a side. */
+static inline double lens_ring(const primitive *p, int k)
+{
+    return lens_height(p, k, HUGE_VAL);
 }
 
 static inline bool lens_contains(const primitive *p, vec3 q)
 {
     const double rho2 = q.x * q.x + q.z * q.z;
-    const even_asphere one = lens_asphere(p, 0), two = lens_asphere(p, 1);
-    return rho2 <= p->radius * p->radius && q.y >= asphere_sag(&one, rho2) && q.y - p->top <= asphere_sag(&two, rho2);
+    return rho2 <= p->radius * p->radius && q.y >= lens_height(p, 0, rho2) && q.y <= lens_height(p, 1, rho2);
 }
 
 static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
@@ -136,6 +150,8 @@ static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
         const even_asphere e = lens_asphere(p, k);
         if (e.curvature == 0.0 && !asphere_has_terms(&e))
             flat[count++] = (flat_face){1 + k, 1, k == 0 ? 0.0 : p->top, k == 0 ? -1.0 : 1.0};
+        if (lens_clear(p, k) < HUGE_VAL)
+            flat[count++] = (flat_face){3 + k, 1, lens_ring(p, k), k == 0 ? -1.0 : 1.0};
     }
     return count;
 }
@@ -147,5 +163,5 @@ static inline surface_mapping lens_mapping(const primitive *p, int64_t face, vec
     const double r = p->radius, bottom = lens_height(p, 0, r * r), top = lens_height(p, 1, r * r);
     if (face == 0)
         return mapping_around(q.x, q.z, r, q.y - bottom, top - bottom, size);
-    return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
+    return mapping_flat(q.x + r, face == 1 || face == 3 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
 }

@@ -6,7 +6,6 @@
 #include "geometry/primitives/primitive.h"
 #include "geometry/regions/instance_set.h"
 #include "geometry/regions/solid_tree.h"
-#include "geometry/shapes/meniscus.h"
 #include "geometry/shapes/shape.h"
 
 #include <stdlib.h>
@@ -64,6 +63,13 @@ static void add_primitive(scene_geometry *g, int priority_index, const primitive
         g->primitives[g->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
 }
 
+/* The bytes of a shape's details, in units that keep those of the next shape aligned. */
+static size_t detail_space(const solid_shape *s)
+{
+    const size_t unit = _Alignof(max_align_t);
+    return shape_of(s)->details ? (shape_of(s)->details(s, NULL) + unit - 1) / unit * unit : 0;
+}
+
 static void add_region(scene_geometry *g, int priority_index, const region_source *source)
 {
     primitive parts[SHAPE_PRIMITIVES];
@@ -72,10 +78,10 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
     const solid_shape placed = scene_geometry_shape(g, priority_index);
     const uint32_t copy = g->origins[priority_index].copy;
     shape->primitives(&placed, parts);
-    if (has_meniscus(source->shape)) {
-        capillary_profile *surface = &g->surfaces[g->surface_count++];
-        *surface = *meniscus_of(source->shape);
-        parts[0].surface = surface;
+    if (shape->details && detail_space(&placed) > 0) {
+        parts[0].details = g->details + g->detail_bytes;
+        shape->details(&placed, g->details + g->detail_bytes);
+        g->detail_bytes += detail_space(&placed);
     }
     if (!source->opaque && priority_index > g->highest_transparent)
         g->highest_transparent = priority_index;
@@ -136,7 +142,7 @@ typedef struct primitive_counts {
     size_t regions;
     size_t all, findable; /* findable: those that a tree can find */
     size_t normals;       /* of all their sides */
-    size_t surfaces;      /* of liquids with a meniscus */
+    size_t details;       /* bytes of their details */
     bool meshes;
 } primitive_counts;
 
@@ -150,7 +156,7 @@ static primitive_counts count_primitives(const region_source *sources, int count
         n.all += places;
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
         n.normals += copies * (size_t)sources[i].shape->sides;
-        n.surfaces += has_meniscus(sources[i].shape) ? copies : 0;
+        n.details += copies * detail_space(sources[i].shape);
         n.meshes |= shape_of(sources[i].shape)->triangles;
     }
     return n;
@@ -211,10 +217,10 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
         g->origins = large_calloc(n.regions + 1, sizeof *g->origins);
         g->shapes = calloc((size_t)count + 1, sizeof *g->shapes);
         g->normals = large_calloc(n.normals + 1, sizeof *g->normals);
-        g->surfaces = calloc(n.surfaces + !n.surfaces, sizeof *g->surfaces);
+        g->details = calloc(n.details + 1, 1);
         g->direct_regions = calloc(n.regions + 1, sizeof *g->direct_regions);
     }
-    if (!g || !order || !g->primitives || !g->regions || !g->origins || !g->shapes || !g->normals || !g->surfaces ||
+    if (!g || !order || !g->primitives || !g->regions || !g->origins || !g->shapes || !g->normals || !g->details ||
         !g->direct_regions) {
         free(order);
         scene_geometry_destroy(g);
@@ -250,7 +256,7 @@ void scene_geometry_destroy(scene_geometry *g)
     free(g->primitives);
     free(g->regions);
     free(g->normals);
-    free(g->surfaces);
+    free(g->details);
     free(g->shapes);
     free(g->origins);
     free(g);

@@ -47,6 +47,15 @@ static void cylinder_primitives(const solid_shape *shape, primitive *out)
     out[0].extent += fmax(0.0, meniscus_high(shape) - shape->height);
 }
 
+static size_t cylinder_details(const solid_shape *shape, void *out)
+{
+    if (!has_meniscus(shape))
+        return 0;
+    if (out)
+        *(capillary_profile *)out = *meniscus_of(shape);
+    return sizeof(capillary_profile);
+}
+
 static int cylinder_more_rows(const solid_shape *shape)
 {
     return has_meniscus(shape) ? 1 : 0;
@@ -158,6 +167,7 @@ const shape_rule shape_cylinder = {
     .primitive_count = 1,
     .more_rows = cylinder_more_rows,
     .primitives = cylinder_primitives,
+    .details = cylinder_details,
     .faces = {WORDS("side", "bottom", "top", "ring")},
     .flat = cylinder_flat,
     .extent = cylinder_extent,

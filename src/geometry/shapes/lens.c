@@ -1,5 +1,6 @@
 /* The shape lens: within the radius diameter / 2 of the axis, between two conics of revolution about it, or even
  * aspheres (lens_profile.h): side 1 through the position, its vertex, and side 2 through the vertex `thickness` above.
+ * A side with a smaller diameter of its own is continued by a level ring, so that the rim may be wider than a sphere.
  * A radius of curvature is positive if its centre lies above the vertex, as for light that travels upwards (Hecht,
  * Optics, 5.2): a biconvex lens has radius_1 > 0 > radius_2. 0 is a flat side. Coefficients count upwards for both
  * sides. */
@@ -27,22 +28,39 @@ static status check_side(const solid_shape *s, int k, diagnostic *why)
                         "radius_%d or conic_%d is not finite", k + 1, k + 1);
     const double fraction = e.aspheric ? sqrt(1.0 - ASPHERE_ROOT2_LEAST) : 1.0;
     const double half = e.conic > -1.0 ? fraction * fabs(radius) / sqrt(1.0 + e.conic) : HUGE_VAL;
-    if (radius == 0.0 || s->diameter <= 2.0 * half)
+    const double diameter = 2.0 * lens_clear_of(s, k);
+    if (radius == 0.0 || diameter <= 2.0 * half)
         return STATUS_OK;
     char remedy[160];
-    snprintf(remedy, sizeof remedy, "use a diameter of at most %g, or a radius_%d of at least %g in magnitude",
-             2.0 * half, k + 1, fabs(radius) * (s->diameter / (2.0 * half)));
+    snprintf(remedy, sizeof remedy, "use a diameter_%d of at most %g, or a radius_%d of at least %g in magnitude",
+             k + 1, 2.0 * half, k + 1, fabs(radius) * (diameter / (2.0 * half)));
     return diagnose(why, STATUS_BAD_INPUT, remedy,
-                    "diameter %g is larger than side %d, which %sends at a diameter of %g", s->diameter, k + 1,
+                    "diameter %g is larger than side %d, which %sends at a diameter of %g", diameter, k + 1,
                     e.aspheric ? "with coefficients " : "", 2.0 * half);
+}
+
+static status check_diameters(const solid_shape *s, diagnostic *why)
+{
+    const double larger = fmax(s->diameter_1, s->diameter_2);
+    const int k = s->diameter_1 < s->diameter_2;
+    if (!(s->diameter_1 >= 0.0 && s->diameter_2 >= 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "use numbers from 0, which stands for the diameter",
+                        "diameter_1 is %g and diameter_2 is %g", s->diameter_1, s->diameter_2);
+    if (larger <= s->diameter)
+        return STATUS_OK;
+    char remedy[160];
+    snprintf(remedy, sizeof remedy, "use a diameter of at least %.9g, that of the rim, or a smaller diameter_%d", larger,
+             k + 1);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "diameter_%d %g is larger than the diameter %g", k + 1, larger,
+                    s->diameter);
 }
 
 static status check_form(const solid_shape *s, int k, lens_form *form, diagnostic *why)
 {
     const double *even = k == 0 ? s->even_1 : s->even_2;
-    if (!isfinite(even[0]) || !isfinite(even[1]) || !isfinite(even[2]))
-        return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "a4_%d, a6_%d or a8_%d is not finite", k + 1,
-                        k + 1, k + 1);
+    for (int i = 0; i < ASPHERE_TERMS; i++)
+        if (!isfinite(even[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "a%d_%d is not finite", 4 + 2 * i, k + 1);
     double within;
     *form = lens_form_of(s, k, &within);
     if (*form < LENS_TURNS)
@@ -50,9 +68,11 @@ static status check_form(const solid_shape *s, int k, lens_form *form, diagnosti
     char remedy[160], diameter[48] = "smaller diameter"; /* if the side is not allowed even near the axis */
     if (within > 0.0)
         snprintf(diameter, sizeof diameter, "diameter of at most %.6g", 2.0 * within);
-    snprintf(remedy, sizeof remedy, "use a %s, or smaller a4_%d, a6_%d and a8_%d", diameter, k + 1, k + 1, k + 1);
+    const int terms = lens_profile_of(s, k).e.terms;
+    snprintf(remedy, sizeof remedy, "use a %s, or smaller coefficients a4_%d to a%d_%d", diameter, k + 1,
+             2 + 2 * terms, k + 1);
     const char *what = *form == LENS_STEEP ? "is too steep" : "turns more than once between convex and concave";
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what, lens_rim(s));
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what, lens_clear_of(s, k));
 }
 
 static status check_forms(const solid_shape *s, diagnostic *why)
@@ -60,7 +80,13 @@ static status check_forms(const solid_shape *s, diagnostic *why)
     lens_form form[2] = {LENS_CONVEX, LENS_CONVEX};
     TRY(check_form(s, 0, &form[0], why));
     TRY(check_form(s, 1, &form[1], why));
-    if ((int)form[0] + (int)form[1] - 1 <= CHORDS_MAX)
+    int intervals = -1;
+    for (int k = 0; k < 2; k++) {
+        const lens_profile e = lens_profile_of(s, k);
+        /* The ring of a side that is not concave can be crossed besides the side. */
+        intervals += (int)form[k] + (lens_has_ring(&e) && !lens_is_flat(&e) && form[k] != LENS_CONCAVE);
+    }
+    if (intervals <= CHORDS_MAX)
         return STATUS_OK;
     const int turns = form[0] == LENS_ONE_TURN ? 1 : 2;
     char remedy[160];
@@ -76,6 +102,7 @@ static status check(const solid_shape *s, diagnostic *why)
 {
     TRY(check_length(s->diameter, "diameter", why));
     TRY(check_length(s->thickness, "thickness", why));
+    TRY(check_diameters(s, why));
     TRY(check_side(s, 0, why));
     TRY(check_side(s, 1, why));
     TRY(check_forms(s, why));
@@ -105,34 +132,44 @@ static double highest(const solid_shape *s)
     return lens_highest_of(s, 1);
 }
 
+static size_t details(const solid_shape *s, void *out)
+{
+    const lens_profile side[2] = {lens_profile_of(s, 0), lens_profile_of(s, 1)};
+    lens_details *const d = out;
+    for (int k = 0; k < 2 && d; k++) {
+        for (int i = 0; i < ASPHERE_TERMS; i++)
+            d->even[k][i] = side[k].e.even[i];
+        d->low[k] = lens_lowest_of(s, k) - side[k].vertex;
+        d->high[k] = lens_highest_of(s, k) - side[k].vertex;
+        d->clear[k] = side[k].clear;
+    }
+    const bool conics = !side[0].aspheric && !side[1].aspheric;
+    return conics && !lens_has_ring(&side[0]) && !lens_has_ring(&side[1]) ? 0 : sizeof(lens_details);
+}
+
 static void primitives(const solid_shape *s, primitive *out)
 {
     const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
     const primitive_rule *const by_concave_sides[] = {&lens_rule, &meniscus_rule, &biconcave_rule};
-    const bool aspheric = one.aspheric || two.aspheric;
+    const bool aspheric = details(s, NULL) > 0;
     const double reach = aspheric ? lens_rim(s) + fmax(fabs(lowest(s)), fabs(highest(s)))
                                   : s->thickness + lens_rim(s) + fmax(fabs(lens_edge(s, 0)), fabs(lens_edge(s, 1)));
     out[0] = primitive_placed(s, aspheric ? &asphere_rule : by_concave_sides[one.concave + two.concave], reach);
     out[0].radius = lens_rim(s);
     out[0].top = s->thickness;
     out[0].lens = (lens_sides){.curvature = {one.e.curvature, two.e.curvature}, .conic = {one.conic, two.conic}};
-    for (int k = 0; k < 2 && aspheric; k++) {
-        const lens_profile *e = k == 0 ? &one : &two;
-        for (int i = 0; i < 3; i++)
-            out[0].lens.even[k][i] = e->e.even[i];
-        out[0].lens.low[k] = lens_lowest_of(s, k) - e->vertex;
-        out[0].lens.high[k] = lens_highest_of(s, k) - e->vertex;
-    }
 }
 
 static bool flat(const solid_shape *s, size_t i, vec3 *normal, vec3 *point)
 {
-    double heights[2];
+    double heights[4];
     size_t count = 0;
     for (int k = 0; k < 2; k++) {
         const lens_profile e = lens_profile_of(s, k);
         if (lens_is_flat(&e))
             heights[count++] = e.vertex;
+        if (lens_has_ring(&e))
+            heights[count++] = lens_edge(s, k);
     }
     return level_faces(heights, count, i, normal, point);
 }
@@ -149,12 +186,13 @@ static double farthest_of_side(const solid_shape *s, int k, vec3 d)
 {
     const lens_profile e = lens_profile_of(s, k);
     const double out = hypot(d.x, d.z), outwards = k == 0 ? -d.y : d.y, slope = out / outwards;
-    double rho = lens_rim(s);
+    const double at_rim = lens_rim(s) * out + lens_edge(s, k) * d.y;
+    double rho = lens_clear_of(s, k);
     if (e.aspheric)
         return lens_reach_of(s, k, out, d.y);
     if (!e.concave && e.e.curvature != 0.0 && outwards > 0.0 && 1.0 + (1.0 + e.conic) * slope * slope > 0.0)
         rho = fmin(rho, slope / (fabs(e.e.curvature) * sqrt(1.0 + (1.0 + e.conic) * slope * slope)));
-    return rho * out + lens_height_at(&e, rho) * d.y;
+    return fmax(at_rim, rho * out + lens_height_at(&e, rho) * d.y);
 }
 
 static double farthest(const solid_shape *s, vec3 d)
@@ -175,7 +213,8 @@ static void fit(solid_shape *s, double size)
     s->radius_1 = size;
     s->radius_2 = -size;
     s->conic_1 = s->conic_2 = 0.0;
-    for (int i = 0; i < 3; i++)
+    s->diameter_1 = s->diameter_2 = 0.0;
+    for (int i = 0; i < ASPHERE_TERMS; i++)
         s->even_1[i] = s->even_2[i] = 0.0;
 }
 
@@ -187,12 +226,14 @@ static int rings(const solid_shape *s, shape_ring *out)
     for (int k = 0; k < 2; k++) {
         const lens_profile e = lens_profile_of(s, k);
         double within;
-        const bool convex = lens_form_of(s, k, &within) == LENS_CONVEX;
+        const bool convex = lens_form_of(s, k, &within) == LENS_CONVEX && !lens_has_ring(&e);
         const int piece = convex ? 0 : ++pieces;
         for (int i = 0; i < CIRCLES; i++) {
-            const double rho = lens_rim(s) * i / (CIRCLES - 1);
+            const double rho = lens_clear_of(s, k) * i / (CIRCLES - 1);
             out[count++] = (shape_ring){.part = piece, .y = lens_height_at(&e, rho), .x = rho, .z = rho};
         }
+        if (lens_has_ring(&e))
+            out[count++] = (shape_ring){.part = piece, .y = lens_edge(s, k), .x = lens_rim(s), .z = lens_rim(s)};
         if (!convex)
             out[count++] = (shape_ring){.y = lens_edge(s, k), .x = lens_rim(s), .z = lens_rim(s)};
     }
@@ -203,16 +244,18 @@ static int rings(const solid_shape *s, shape_ring *out)
 static status tessellation(const solid_shape *s, int part, mesh **out, diagnostic *why)
 {
     (void)part;
-    profile_point profile[2 * ARC_STEPS + 2];
+    profile_point profile[2 * ARC_STEPS + 4];
     size_t count = 0;
     const bool is_sharp = !(lens_edge(s, 1) - lens_edge(s, 0) > PLACED_SLACK * (s->thickness + s->diameter));
     for (int k = 0; k < 2; k++) {
         const lens_profile e = lens_profile_of(s, k);
-        const int steps = lens_is_flat(&e) ? 1 : ARC_STEPS;
-        for (int i = k && is_sharp ? 1 : 0; i <= steps; i++) {
+        const int steps = lens_is_flat(&e) ? 1 : ARC_STEPS, ring = lens_has_ring(&e);
+        for (int i = k && is_sharp ? 1 : 0; i <= steps + ring; i++) {
             double sine, cosine;
-            elementary_sincos_deg(90.0 * (k == 0 ? i : steps - i) / steps, &sine, &cosine);
-            profile[count++] = (profile_point){lens_rim(s) * sine, lens_height_at(&e, lens_rim(s) * sine)};
+            const int step = k == 0 ? i : steps + ring - i; /* beyond `steps`: the ring's outer edge */
+            elementary_sincos_deg(90.0 * (step < steps ? step : steps) / steps, &sine, &cosine);
+            const double rho = step > steps ? lens_rim(s) : lens_clear_of(s, k) * sine;
+            profile[count++] = (profile_point){rho, lens_height_at(&e, rho)};
         }
     }
     return tessellate_lathe(profile, count, out, why);
@@ -223,17 +266,20 @@ const shape_rule shape_lens = {
     .meaning =
         "x^2 + z^2 <= (diameter / 2)^2, between side 1, through its position, and side 2, which crosses the axis "
         "at y = thickness: spheres, or conics, of signed radii of curvature radius_1 and radius_2, positive if "
-        "the centre lies above the side, 0 for a flat one; with a4_1 to a8_2 even aspheres; the sides do not cross "
-        "within the rim",
-    .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "conic_1", "conic_2", "a4_1", "a6_1", "a8_1",
-                        "a4_2", "a6_2", "a8_2", "points", "scale"),
+        "the centre lies above the side, 0 for a flat one; with a4_1 to a20_2 even aspheres; a side with a smaller "
+        "diameter_1 or diameter_2 of its own ends in a level ring; the sides do not cross within the rim",
+    .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "diameter_1", "diameter_2", "conic_1",
+                        "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1", "a18_1", "a20_1",
+                        "a4_2", "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "points",
+                        "scale"),
     .curved = true,
     .check = check,
     .contains = contains,
     .primitive_count = 1,
     .further_rows = 2,
     .primitives = primitives,
-    .faces = {WORDS("rim", "side 1", "side 2")},
+    .details = details,
+    .faces = {WORDS("rim", "side 1", "side 2", "ring of side 1", "ring of side 2")},
     .flat = flat,
     .extent = extent,
     .farthest = farthest,

@@ -5,20 +5,27 @@
 lens_profile lens_profile_of(const solid_shape *s, int k)
 {
     const double radius = k == 0 ? s->radius_1 : s->radius_2, conic = k == 0 ? s->conic_1 : s->conic_2;
-    const double *even = k == 0 ? s->even_1 : s->even_2;
+    const double diameter = k == 0 ? s->diameter_1 : s->diameter_2;
+    const bool ring = diameter > 0.0 && diameter < s->diameter;
     lens_profile e = {
-        .e = {radius == 0.0 ? 0.0 : 1.0 / radius, 1.0 + conic, {even[0], even[1], even[2]}},
+        .e = asphere_of(radius == 0.0 ? 0.0 : 1.0 / radius, conic, k == 0 ? s->even_1 : s->even_2),
         .conic = conic,
         .vertex = k == 0 ? 0.0 : s->thickness,
+        .clear = ring ? 0.5 * diameter : HUGE_VAL,
         .concave = k == 0 ? radius < 0.0 : radius > 0.0,
     };
     e.aspheric = asphere_has_terms(&e.e);
     return e;
 }
 
-static bool lens_has_asphere(const solid_shape *s)
+double lens_clear_of(const solid_shape *s, int k)
 {
-    return lens_profile_of(s, 0).aspheric || lens_profile_of(s, 1).aspheric;
+    return fmin(lens_rim(s), lens_profile_of(s, k).clear);
+}
+
+static bool is_conic(const lens_profile *e)
+{
+    return !e->aspheric && !lens_has_ring(e);
 }
 
 double lens_edge(const solid_shape *s, int k)
@@ -41,11 +48,11 @@ typedef struct profile_sum {
 
 static double sum_at(const profile_sum *f, double rho)
 {
-    return f->up * (lens_height_at(&f->plus, rho) - asphere_sag(&f->minus.e, rho * rho)) + f->out * rho;
+    return f->up * (lens_height_at(&f->plus, rho) - (lens_height_at(&f->minus, rho) - f->minus.vertex)) + f->out * rho;
 }
 
 /* The radius of the least value within the rim: the best of equidistant radii, then golden section search between its
- * neighbours. */
+ * neighbours; or where a ring begins. */
 static double least_within(const profile_sum *f, double rim)
 {
     enum { STEPS = 256 };
@@ -65,8 +72,12 @@ static double least_within(const profile_sum *f, double rim)
         else
             low = a;
     }
-    const double at = 0.5 * (low + high), sampled = rim * best / STEPS;
-    return sum_at(f, at) < least ? at : sampled;
+    double at = rim * best / STEPS;
+    const double others[] = {0.5 * (low + high), fmin(rim, f->plus.clear), fmin(rim, f->minus.clear)};
+    for (int i = 0; i < 3; i++)
+        if (sum_at(f, others[i]) < least)
+            at = others[i], least = sum_at(f, at);
+    return at;
 }
 
 /* The radius at which two conics are nearest: on the axis, at the rim, or where their slopes c rho / sqrt(1 - (1 + k)
@@ -84,13 +95,13 @@ static double nearest_conics(const solid_shape *s)
 
 double lens_nearest_sides(const solid_shape *s)
 {
-    if (!lens_has_asphere(s))
-        return nearest_conics(s);
     const profile_sum gap = {lens_profile_of(s, 1), lens_profile_of(s, 0), 1.0, 0.0};
+    if (is_conic(&gap.plus) && is_conic(&gap.minus))
+        return nearest_conics(s);
     return least_within(&gap, lens_rim(s));
 }
 
-static const lens_profile level_profile = {.vertex = 0.0};
+static const lens_profile level_profile = {.vertex = 0.0, .clear = HUGE_VAL};
 
 double lens_reach_of(const solid_shape *s, int k, double out, double up)
 {
@@ -132,32 +143,68 @@ enum { FORM_PIECES = 256 };
 #define SLOPE_MOST 16.0
 #define BEND_MOST 0x1p14
 
-/* An interval that contains the sum conic / w^power + k0 + k1 q + k2 q^2 + k3 q^3. If the side has no curvature, the
- * sum is divided by its lowest power of q, which leaves its sign unchanged. */
-static asphere_range sign_of(const even_asphere *e, double conic, int power, const double k[4], double from, double to)
+/* Coefficients, from the power 0 of q on, of the sums of a side's terms: of p, g, dg/dq, and of half the second
+ * derivative along the meridian. For A_n rho^n with n = 4 + 2 i: (i + 2) q^(i + 1) in p, and n (n - 1) / 2 q^(i + 1) in
+ * the last. */
+typedef struct form_terms {
+    int count;
+    double p[ASPHERE_TERMS + 1], g[ASPHERE_TERMS + 1], turn[ASPHERE_TERMS + 1], bend[ASPHERE_TERMS + 1];
+} form_terms;
+
+static form_terms form_terms_of(const even_asphere *e)
 {
-    double a = conic, b = conic, shifted[4] = {0.0};
+    form_terms s = {.count = e->terms};
+    for (int i = 0; i < e->terms; i++) {
+        const double n = 4.0 + 2.0 * i;
+        s.p[i + 1] = (i + 2.0) * e->even[i];
+        s.g[i] = (i + 1.0) * s.p[i + 1];
+        if (i > 0)
+            s.turn[i - 1] = i * s.g[i];
+        s.bend[i + 1] = 0.5 * n * (n - 1.0) * e->even[i];
+    }
+    return s;
+}
+
+/* asphere_range_of, and closer where terms cancel: their sum is within |half width| max |derivative| of that in the
+ * middle. */
+static asphere_range range_of(double conic_from, double conic_to, int terms, const double *k, double from, double to)
+{
+    const double middle = 0.5 * (from + to);
+    double value = 0.0, slope[ASPHERE_TERMS + 1] = {0.0};
+    for (int i = terms; i >= 0; i--)
+        value = k[i] + middle * value;
+    for (int i = 1; i <= terms; i++)
+        slope[i - 1] = i * k[i];
+    const asphere_range all = asphere_range_of(conic_from, conic_to, terms, k, from, to),
+                        rise = asphere_range_of(0.0, 0.0, terms, slope, from, to);
+    const double spread = 0.5 * (to - from) * fmax(fabs(rise.low), fabs(rise.high));
+    return (asphere_range){fmax(all.low, fmin(conic_from, conic_to) + (value - spread)),
+                           fmin(all.high, fmax(conic_from, conic_to) + (value + spread))};
+}
+
+/* An interval that contains the sum conic / w^power + k0 + k1 q + ... If the side has no curvature, the sum is divided
+ * by its lowest power of q, which leaves its sign unchanged. */
+static asphere_range sign_of(const even_asphere *e, double conic, int power, const double *k, double from, double to)
+{
+    double a = conic, b = conic, shifted[ASPHERE_TERMS + 1] = {0.0};
     int first = 0;
     for (int i = 0; i < power; i++)
         a /= asphere_root(e, from), b /= asphere_root(e, to);
-    while (e->curvature == 0.0 && first < 3 && k[first] == 0.0)
+    while (e->curvature == 0.0 && first < e->terms && k[first] == 0.0)
         first++;
-    for (int i = first; i < 4; i++)
+    for (int i = first; i <= e->terms; i++)
         shifted[i - first] = k[i];
-    return asphere_range_of(a, b, shifted, from, to);
+    return range_of(a, b, e->terms, shifted, from, to);
 }
 
 /* A lower bound of 3 g^2 - p dg/dq. */
-static double least_turning(const even_asphere *e, double from, double to)
+static double least_turning(const even_asphere *e, const form_terms *k, double from, double to)
 {
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;
-    const double *k = e->even;
     const double c3 = 0.25 * e->stretch * c * c * c, c5 = 1.5 * e->stretch * c * c * c3;
-    const double first[4] = {0.0, 2.0 * k[0], 3.0 * k[1], 4.0 * k[2]},
-                 second[4] = {2.0 * k[0], 6.0 * k[1], 12.0 * k[2], 0.0}, third[4] = {6.0 * k[1], 24.0 * k[2], 0.0, 0.0};
-    const asphere_range p = asphere_range_of(0.5 * c * a, 0.5 * c * b, first, from, to),
-                        g = asphere_range_of(c3 * a * a * a, c3 * b * b * b, second, from, to),
-                        d = asphere_range_of(c5 * a * a * a * a * a, c5 * b * b * b * b * b, third, from, to);
+    const asphere_range p = range_of(0.5 * c * a, 0.5 * c * b, k->count, k->p, from, to),
+                        g = range_of(c3 * a * a * a, c3 * b * b * b, k->count, k->g, from, to),
+                        d = range_of(c5 * a * a * a * a * a, c5 * b * b * b * b * b, k->count, k->turn, from, to);
     const double least = g.low > 0.0 || g.high < 0.0 ? fmin(fabs(g.low), fabs(g.high)) : 0.0;
     return 3.0 * least * least - fmax(fmax(p.low * d.low, p.low * d.high), fmax(p.high * d.low, p.high * d.high));
 }
@@ -176,22 +223,18 @@ static bool turns_once(const form_so_far *f)
     return !(f->falls && f->rises) && f->steady && f->intervals <= 1;
 }
 
-static void extend(form_so_far *f, const even_asphere *e, double inwards, double from, double to)
+static void extend(form_so_far *f, const even_asphere *e, const form_terms *k, double inwards, double from, double to)
 {
     const double c = e->curvature;
-    const double *k = e->even;
-    const double first[4] = {0.0, 2.0 * k[0], 3.0 * k[1], 4.0 * k[2]},
-                 second[4] = {2.0 * k[0], 6.0 * k[1], 12.0 * k[2], 0.0},
-                 bends[4] = {0.0, 6.0 * k[0], 15.0 * k[1], 28.0 * k[2]};
-    const asphere_range p = sign_of(e, 0.5 * c, 1, first, from, to), bend = sign_of(e, 0.5 * c, 3, bends, from, to),
-                        g = sign_of(e, 0.25 * e->stretch * c * c * c, 3, second, from, to);
+    const asphere_range p = sign_of(e, 0.5 * c, 1, k->p, from, to), bend = sign_of(e, 0.5 * c, 3, k->bend, from, to),
+                        g = sign_of(e, 0.25 * e->stretch * c * c * c, 3, k->g, from, to);
     const bool up = p.low >= 0.0 && bend.low >= 0.0, down = p.high <= 0.0 && bend.high <= 0.0;
     f->convex &= inwards > 0.0 ? up : down;
     f->concave &= inwards > 0.0 ? down : up;
     const bool falls = p.high > 0.0 && g.low < 0.0 && bend.low <= 0.0,
                rises = p.low < 0.0 && g.high > 0.0 && bend.high >= 0.0;
     if (falls || rises) {
-        f->steady &= least_turning(e, from, to) >= 0.0;
+        f->steady &= least_turning(e, k, from, to) >= 0.0;
         f->intervals += !f->within;
     }
     f->within = falls || rises;
@@ -209,14 +252,15 @@ static bool is_steep(const even_asphere *e, double rim, double from, double to)
 static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
 {
     const even_asphere e = lens_profile_of(s, k).e;
-    const double inwards = k == 0 ? 1.0 : -1.0, rim = lens_rim(s);
+    const form_terms terms = form_terms_of(&e);
+    const double inwards = k == 0 ? 1.0 : -1.0, rim = lens_clear_of(s, k);
     form_so_far f = {.convex = true, .concave = true, .steady = true};
     for (int i = 0; i < FORM_PIECES; i++) {
         const double from = rim * rim * i / FORM_PIECES, to = rim * rim * (i + 1) / FORM_PIECES;
         *within = sqrt(from);
         if (is_steep(&e, rim, from, to))
             return LENS_STEEP;
-        extend(&f, &e, inwards, from, to);
+        extend(&f, &e, &terms, inwards, from, to);
         if (!f.convex && !f.concave && !turns_once(&f))
             return LENS_TURNS;
     }
@@ -227,6 +271,6 @@ static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
 lens_form lens_form_of(const solid_shape *s, int k, double *within)
 {
     const lens_profile e = lens_profile_of(s, k);
-    *within = lens_rim(s);
+    *within = lens_clear_of(s, k);
     return e.aspheric ? form_of_asphere(s, k, within) : e.concave ? LENS_CONCAVE : LENS_CONVEX;
 }

@@ -8,6 +8,7 @@
 typedef struct lens_profile {
     even_asphere e;
     double conic, vertex;
+    double clear; /* radius up to which it reaches, a level ring beyond it; infinite without a ring */
     bool concave; /* by its radius; a side with coefficients: see lens_form_of */
     bool aspheric;
 } lens_profile;
@@ -20,9 +21,15 @@ static inline bool lens_is_flat(const lens_profile *e)
     return e->e.curvature == 0.0 && !e->aspheric;
 }
 
+static inline bool lens_has_ring(const lens_profile *e)
+{
+    return e->clear < HUGE_VAL;
+}
+
 static inline double lens_height_at(const lens_profile *e, double rho)
 {
-    return e->vertex + asphere_sag(&e->e, rho * rho);
+    const double r = rho < e->clear ? rho : e->clear;
+    return e->vertex + asphere_sag(&e->e, r * r);
 }
 
 static inline double lens_rim(const solid_shape *s)
@@ -31,6 +38,8 @@ static inline double lens_rim(const solid_shape *s)
 }
 
 /* The heights of the rim's two edges. */
+/* The radius up to which a side reaches: the rim's, or less. */
+double lens_clear_of(const solid_shape *s, int k);
 double lens_edge(const solid_shape *s, int k);
 /* The distance between the sides at a radius, and the radius where they are nearest to each other. */
 double lens_gap_at(const solid_shape *s, double rho);
@@ -47,6 +56,6 @@ double lens_reach_of(const solid_shape *s, int k, double out, double up);
  * twice. */
 typedef enum lens_form { LENS_CONVEX = 1, LENS_CONCAVE = 2, LENS_ONE_TURN = 3, LENS_TURNS, LENS_STEEP } lens_form;
 
-/* A flat side is convex. within: the radius up to which a side with coefficients is not steep, and turns no more than
- * the kernels can bound. */
+/* The form of a side without its ring. A flat side is convex. within: the radius up to which a side with coefficients
+ * is not steep, and turns no more than the kernels can bound. */
 lens_form lens_form_of(const solid_shape *s, int k, double *within);

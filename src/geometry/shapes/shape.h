@@ -11,7 +11,7 @@
 
 struct primitive;
 
-enum { SHAPE_PRIMITIVES = 2, RINGS_MAX = 16 }; /* the most per shape */
+enum { SHAPE_PRIMITIVES = 2, RINGS_MAX = 20 }; /* the most per shape */
 
 /* The bounding box of a shape in its own frame, and the radius of a ball about the box's centre that contains the
  * shape. */
@@ -67,6 +67,9 @@ typedef struct shape_rule {
     int further_rows; /* scratch rows beyond one per primitive: see geometry/scene_geometry.h */
     int (*more_rows)(const solid_shape *shape); /* further rows of this shape only; NULL: none */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
+    /* The bytes of the data that its first primitive refers to (primitive.details), 0 for none; writes them unless out
+     * is NULL. NULL: it never has any. */
+    size_t (*details)(const solid_shape *shape, void *out);
     /* By primitive, the names of its faces by number; the last name also applies to all higher numbers. */
     const char *const *faces[SHAPE_PRIMITIVES];
     /* The normal and one point of its i-th flat face, both local; false past the last one. */

@@ -88,7 +88,10 @@ static double distance_from_face(const solid_shape *s, vec3 local, int64_t face)
     const quad rho2 = (quad)local.x * local.x + (quad)local.z * local.z, rho = quad_sqrt(rho2);
     if (face == 0)
         return fabs((double)(rho - (quad)s->diameter / 2));
-    const quad rise = asphere_rise(s, (int)face - 1, rho), away = local.y - asphere_height(s, (int)face - 1, rho2);
+    if (face > 2) /* a ring: its height, and where it begins */
+        return fmax(fabs((double)(local.y - asphere_height(s, (int)face - 3, HUGE_VAL))),
+                    (double)(side_radius(s, (int)face - 3) - rho));
+    const quad rise = asphere_rise(s, (int)face - 1, rho), away = local.y - asphere_side(s, (int)face - 1, rho2);
     return fabs((double)(away / quad_sqrt(1 + rise * rise)));
 }
 
@@ -99,7 +102,7 @@ static void crossings_of_random_lines_agree_with_a_dense_search(void **state)
     (void)state;
     const int lines = trials_of(40000);
     uint64_t seed = 1;
-    long crossings = 0, with[9] = {0}, forms[LENS_TURNS + 1] = {0}, unseen = 0;
+    long crossings = 0, with[9] = {0}, forms[LENS_TURNS + 1] = {0}, unseen = 0, on_rings = 0;
     double worst = 0.0, worst_along = 0.0;
     for (int i = 0; i < lines; i++) {
         const solid_shape s = random_asphere(&seed);
@@ -124,6 +127,7 @@ static void crossings_of_random_lines_agree_with_a_dense_search(void **state)
             const vec3 local = mat3_apply_transposed(turn, vec3_sub(hits[k].point, s.position));
             worst = fmax(worst, distance_from_face(&s, local, hits[k].face % FACES_MAX) / hits[k].error);
             assert_int_equal(hits[k].after, 1 - k % 2);
+            on_rings += hits[k].face % FACES_MAX > 2;
         }
         int next = 0; /* of the crossings, in order */
         for (int k = 0; k < dense.count; k++) {
@@ -145,14 +149,14 @@ static void crossings_of_random_lines_agree_with_a_dense_search(void **state)
         with[n]++;
         scene_geometry_destroy(a);
     }
-    print_message("%d lines, %ld crossings; %ld with two, %ld with four, %ld with six; %ld close pairs that the search "
+    print_message("%d lines, %ld crossings, %ld of rings; %ld with two, %ld with four, %ld with six; %ld close pairs that the search "
                   "missed; sides: %ld convex, %ld concave, %ld with a turn; errors are at most %.3f of the bound for "
                   "points, %.3f along rays\n",
-                  lines, crossings, with[2], with[4], with[6], unseen, forms[LENS_CONVEX], forms[LENS_CONCAVE],
+                  lines, crossings, on_rings, with[2], with[4], with[6], unseen, forms[LENS_CONVEX], forms[LENS_CONCAVE],
                   forms[LENS_ONE_TURN], worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
     assert_true(with[2] > lines / 4 && with[4] > lines / 134 && with[6] > lines / 8000);
-    assert_true(forms[LENS_CONVEX] > lines / 10 && forms[LENS_CONCAVE] > lines / 10 &&
+    assert_true(on_rings > lines / 20 && forms[LENS_CONVEX] > lines / 10 && forms[LENS_CONCAVE] > lines / 10 &&
                 forms[LENS_ONE_TURN] > lines / 10);
 }
 
@@ -221,7 +225,8 @@ static void crossings_are_the_roots_of_a_quartic(void **state)
 }
 
 /* The normal is (-x z' / rho, 1, -z z' / rho) up to its length, with z' by central differences of the definition in
- * quadruple precision, and in closed form: for c rho / w and 4 A4 rho^3 + 6 A6 rho^5 + 8 A8 rho^7. */
+ * quadruple precision, and in closed form: for c rho / w and 4 A4 rho^3 + 6 A6 rho^5 + ... + 20 A20
+ * rho^19. */
 static void normals_are_those_of_the_derivative(void **state)
 {
     (void)state;
@@ -232,15 +237,16 @@ static void normals_are_those_of_the_derivative(void **state)
         s.position = s.rotation_deg = vec3_make(0.0, 0.0, 0.0);
         scene_geometry *a = scene_geometry_of(&s, 1);
         const int k = random_below(&seed, 2);
-        const double rho = 0.499 * s.diameter * sqrt(random_real(&seed, 1e-6, 1.0)), turn = random_real(&seed, 0, 6.3);
+        const double rho = 0.998 * side_radius(&s, k) * sqrt(random_real(&seed, 1e-6, 1.0)), turn = random_real(&seed, 0, 6.3);
         const vec3 d = vec3_make(0.0, k == 0 ? 1.0 : -1.0, 0.0),
                    o = vec3_make(rho * cos(turn), k == 0 ? -3.0 * s.diameter : 9.0 * s.diameter, rho * sin(turn));
         const one_hit h = nearest_interface(a, (one_ray){o, d, FACE_NONE, 0});
         assert_int_equal(h.face, 1 + k);
         const double c = (k == 0 ? s.radius_1 : s.radius_2) == 0.0 ? 0.0 : 1.0 / (k == 0 ? s.radius_1 : s.radius_2);
         const double *even = k == 0 ? s.even_1 : s.even_2, stretch = 1.0 + (k == 0 ? s.conic_1 : s.conic_2);
-        const double closed = c * rho / sqrt(1.0 - stretch * c * c * rho * rho) + 4.0 * even[0] * pow(rho, 3.0) +
-                              6.0 * even[1] * pow(rho, 5.0) + 8.0 * even[2] * pow(rho, 7.0);
+        double closed = c * rho / sqrt(1.0 - stretch * c * c * rho * rho);
+        for (int n = 0; n < ASPHERE_TERMS; n++)
+            closed += (4.0 + 2.0 * n) * even[n] * pow(rho, 3.0 + 2.0 * n);
         const double rises[2] = {(double)asphere_rise(&s, k, rho), closed};
         for (int way = 0; way < 2; way++) {
             const vec3 n = vec3_normalize(vec3_make(-cos(turn) * rises[way], 1.0, -sin(turn) * rises[way]));
@@ -373,7 +379,8 @@ static void forms_are_those_of_second_derivatives(void **state)
         s.radius_1 =
             random_below(&seed, 3) ? random_real(&seed, 1.2, 4.0) * (random_below(&seed, 2) ? 1.0 : -1.0) : 0.0;
         s.conic_1 = random_real(&seed, -2.0, 0.3);
-        for (int k = 0; k < 3; k++)
+        const int orders = i % 3 ? 3 : ASPHERE_TERMS;
+        for (int k = 0; k < orders; k++)
             s.even_1[k] = random_below(&seed, 3) ? random_real(&seed, -0.4, 0.4) : 0.0;
         double within;
         const lens_form form = lens_form_of(&s, 0, &within);
@@ -428,6 +435,77 @@ static void the_volume_is_that_of_the_polynomials(void **state)
     scene_geometry_destroy(a);
 }
 
+static void expect_refused(solid_shape s, const char *what, const char *remedy)
+{
+    diagnostic why = {.what = ""};
+    assert_int_equal(solid_shape_check(&s, &why), STATUS_BAD_INPUT);
+    if (!strstr(why.what, what) || !strstr(why.remedy, remedy))
+        fail_msg("'%s; %s' does not contain '%s' and '%s'", why.what, why.remedy, what, remedy);
+}
+
+/* A side of its own diameter: a spherical cap of height h and radius a has the volume pi h (3 a^2 + h^2) / 6, and what is
+ * beyond it is level. The outer side of this fisheye's first element is 60 wide, its inner one a hemisphere of 30. */
+static void a_hemisphere_within_a_wider_rim(void **state)
+{
+    (void)state;
+    const double pi = acos(-1.0);
+    const solid_shape s = {.kind = SHAPE_LENS,
+                           .radius_1 = 50.0,
+                           .radius_2 = 15.0,
+                           .thickness = 3.0,
+                           .diameter = 62.0,
+                           .diameter_1 = 60.0,
+                           .diameter_2 = 30.0};
+    assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
+    solid_shape whole = s;
+    whole.diameter_2 = 0.0;
+    expect_refused(whole, "diameter 62 is larger than side 2, which ends at a diameter of 30", "a diameter_2 of at most 30");
+    const double sag = 50.0 - 40.0, bowl = pi * sag * (3.0 * 900.0 + sag * sag) / 6.0, half_ball = 2.0 / 3.0 * pi * 3375.0;
+    /* From the vertex of side 1 to the ring of side 2, at 18: the cylinder, without what is below side 1 or its ring, and
+     * without the hemisphere. Below side 1: the cylinder up to its ring at 10, less the bowl. */
+    const double volume = pi * 961.0 * 18.0 - (pi * 961.0 * sag - bowl) - half_ball;
+    scene_geometry *a = scene_geometry_of(&s, 1);
+    const bounds3 box = shape_world_box(&s);
+    assert_true(fabs(box.high.y - 18.0) < 1e-12 && fabs(box.low.y) < 1e-12 && fabs(box.high.x - 31.0) < 1e-12);
+    enum { COLUMNS = 400 };
+    double sum = 0.0;
+    for (int i = 0; i < COLUMNS; i++)
+        for (int k = 0; k < COLUMNS; k++) {
+            const vec3 o = {31.0 * (2.0 * (i + 0.5) / COLUMNS - 1.0), -5.0, 31.0 * (2.0 * (k + 0.5) / COLUMNS - 1.0)};
+            one_hit hits[8];
+            const int n = walk(a, (one_ray){o, {0.0, 1.0, 0.0}, FACE_NONE, 0}, hits, 8);
+            for (int j = 1; j < n; j += 2)
+                sum += hits[j].t;
+        }
+    sum *= 62.0 / COLUMNS * 62.0 / COLUMNS;
+    assert_true(fabs(sum / volume - 1.0) < 1e-3);
+    scene_geometry_destroy(a);
+}
+
+/* Each point of the four zones along a diameter is on the face of its zone. */
+static void rings_are_faces_of_their_own(void **state)
+{
+    (void)state;
+    const solid_shape s = {.kind = SHAPE_LENS,
+                           .radius_1 = 3.0,
+                           .radius_2 = -4.0,
+                           .thickness = 1.0,
+                           .diameter = 2.0,
+                           .diameter_1 = 1.0,
+                           .diameter_2 = 1.6};
+    scene_geometry *a = scene_geometry_of(&s, 1);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 100; i++) {
+            const double x = 0.0099 * i + 1e-6;
+            const one_ray r = {{x, k == 0 ? -9.0 : 9.0, 0.0}, {0.0, k == 0 ? 1.0 : -1.0, 0.0}, FACE_NONE, 0};
+            const one_hit h = nearest_interface(a, r);
+            const bool ring = x > (k == 0 ? 0.5 : 0.8);
+            assert_int_equal(h.face, 1 + k + 2 * ring);
+            assert_true(!ring || h.normal.y == (k == 0 ? -1.0 : 1.0));
+        }
+    scene_geometry_destroy(a);
+}
+
 /* The box in the world contains a dense set of the lens's points, and is the smallest one that does. */
 static void bounds_are_tight(void **state)
 {
@@ -477,14 +555,6 @@ static void drawings_are_on_the_surface(void **state)
     }
 }
 
-static void expect_refused(solid_shape s, const char *what, const char *remedy)
-{
-    diagnostic why = {.what = ""};
-    assert_int_equal(solid_shape_check(&s, &why), STATUS_BAD_INPUT);
-    if (!strstr(why.what, what) || !strstr(why.remedy, remedy))
-        fail_msg("'%s; %s' does not contain '%s' and '%s'", why.what, why.remedy, what, remedy);
-}
-
 static void impossible_aspheres_are_refused(void **state)
 {
     (void)state;
@@ -499,15 +569,22 @@ static void impossible_aspheres_are_refused(void **state)
     expect_refused(s, "cross within the rim, at 0.89442", "a thickness of at least 0.4,");
     s = flat;
     s.even_2[2] = HUGE_VAL;
-    expect_refused(s, "a4_2, a6_2 or a8_2 is not finite", "finite");
+    expect_refused(s, "a8_2 is not finite", "finite");
+    s.even_2[2] = 0.0, s.even_2[8] = NAN;
+    expect_refused(s, "a20_2 is not finite", "finite");
     s = flat;
     s.even_1[0] = -5.0; /* a slope of 20 at the rim */
     expect_refused(s, "side 1 is too steep", "a diameter of at most 1.8");
     s.even_1[0] = -1e9;
-    expect_refused(s, "side 1 is too steep", "use a smaller diameter, or smaller a4_1");
+    expect_refused(s, "side 1 is too steep", "use a smaller diameter, or smaller coefficients a4_1");
     s = flat;
     s.even_1[0] = 1.0, s.even_1[1] = -2.5, s.even_1[2] = 1.5; /* it bends up, down and up */
-    expect_refused(s, "side 1 turns more than once", "a6_1 and a8_1");
+    expect_refused(s, "side 1 turns more than once", "a4_1 to a8_1");
+    s = flat;
+    s.diameter_2 = 2.5;
+    expect_refused(s, "diameter_2 2.5 is larger than the diameter 2", "a diameter of at least 2.5");
+    s.diameter_2 = 0.0, s.diameter_1 = -1.0;
+    expect_refused(s, "diameter_1 is -1", "from 0");
     s = flat; /* a turn in side 1, and a hollow side 2 */
     s.radius_1 = 4.0, s.even_1[0] = -0.2, s.radius_2 = 4.0;
     expect_refused(s, "side 1 turns and side 2 is not convex", "make side 2 flat or convex");
@@ -533,6 +610,8 @@ int main(void)
         cmocka_unit_test(forms_are_those_of_second_derivatives),
         cmocka_unit_test(the_volume_is_that_of_the_polynomials),
         cmocka_unit_test(bounds_are_tight),
+        cmocka_unit_test(a_hemisphere_within_a_wider_rim),
+        cmocka_unit_test(rings_are_faces_of_their_own),
         cmocka_unit_test(drawings_are_on_the_surface),
         cmocka_unit_test(impossible_aspheres_are_refused),
     };
