@@ -55,9 +55,9 @@ typedef struct primitive {
         vec3 half; /* box */
         lens_sides lens;
     };
-    double second_radius;                    /* a second radius, for kinds that have one */
-    int sides;                               /* number of equal sides around the axis; 0 for none */
-    const vec3 *normals;                     /* of the sides; owned by the scene geometry */
+    double second_radius; /* a second radius, for kinds that have one */
+    int sides;            /* number of equal sides around the axis; 0 for none */
+    const vec3 *normals;  /* of the sides; owned by the scene geometry */
     /* The surface of a liquid (capillary_profile), or what the sides of a lens have besides conics (lens_details); NULL
      * for none. Owned by the scene geometry. */
     const void *details;
@@ -108,7 +108,7 @@ typedef struct scene_geometry {
     struct instance_set *meshes;    /* all meshes; NULL without meshes */
     vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
-    char *details;                  /* of all primitives that have some */
+    char *details; /* of all primitives that have some */
     size_t detail_bytes;
 } scene_geometry;
 

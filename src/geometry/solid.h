@@ -40,8 +40,8 @@ typedef struct solid_shape {
     double tube_radius, top_radius;
     int64_t sides;
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
-    double diameter_1, diameter_2; /* of its sides; 0: the rim's */
-    double even_1[9], even_2[9];   /* of its sides' sag: coefficients of the 4th, 6th, ... 20th power of the radius */
+    double diameter_1, diameter_2;                                    /* of its sides; 0: the rim's */
+    double even_1[9], even_2[9]; /* of its sides' sag: coefficients of the 4th, 6th, ... 20th power of the radius */
     vec3 size;
     const struct mesh *mesh;   /* NULL until loaded */
     const struct mesh *points; /* a copy of the solid is at each vertex; NULL: one solid, or not loaded */

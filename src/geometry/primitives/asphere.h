@@ -78,7 +78,7 @@ static inline double asphere_quotient(const even_asphere *e, double p, double q)
 typedef struct lens_details {
     double even[2][ASPHERE_TERMS];
     double low[2], high[2]; /* of a side with coefficients: its least and largest height above its vertex */
-    double clear[2];        /* radius up to which the side reaches; beyond it is a level ring; infinite without a ring */
+    double clear[2]; /* radius up to which the side reaches; beyond it is a level ring; infinite without a ring */
 } lens_details;
 
 typedef struct asphere_range {

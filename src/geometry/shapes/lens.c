@@ -49,8 +49,7 @@ static status check_diameters(const solid_shape *s, diagnostic *why)
     if (larger <= s->diameter)
         return STATUS_OK;
     char remedy[160];
-    snprintf(remedy, sizeof remedy, "use a diameter of at least %.9g, that of the rim, or a smaller diameter_%d", larger,
-             k + 1);
+    snprintf(remedy, sizeof remedy, "use a diameter of at least %.9g, or a smaller diameter_%d", larger, k + 1);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "diameter_%d %g is larger than the diameter %g", k + 1, larger,
                     s->diameter);
 }
@@ -68,11 +67,10 @@ static status check_form(const solid_shape *s, int k, lens_form *form, diagnosti
     char remedy[160], diameter[48] = "smaller diameter"; /* if the side is not allowed even near the axis */
     if (within > 0.0)
         snprintf(diameter, sizeof diameter, "diameter of at most %.6g", 2.0 * within);
-    const int terms = lens_profile_of(s, k).e.terms;
-    snprintf(remedy, sizeof remedy, "use a %s, or smaller coefficients a4_%d to a%d_%d", diameter, k + 1,
-             2 + 2 * terms, k + 1);
+    snprintf(remedy, sizeof remedy, "use a %s, or smaller coefficients of side %d", diameter, k + 1);
     const char *what = *form == LENS_STEEP ? "is too steep" : "turns more than once between convex and concave";
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what, lens_clear_of(s, k));
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "side %d %s, within %.6g from the axis", k + 1, what,
+                    lens_clear_of(s, k));
 }
 
 static status check_forms(const solid_shape *s, diagnostic *why)
@@ -269,9 +267,8 @@ const shape_rule shape_lens = {
         "the centre lies above the side, 0 for a flat one; with a4_1 to a20_2 even aspheres; a side with a smaller "
         "diameter_1 or diameter_2 of its own ends in a level ring; the sides do not cross within the rim",
     .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "diameter_1", "diameter_2", "conic_1",
-                        "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1", "a18_1", "a20_1",
-                        "a4_2", "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "points",
-                        "scale"),
+                        "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1", "a18_1", "a20_1", "a4_2",
+                        "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

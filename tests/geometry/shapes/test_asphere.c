@@ -149,11 +149,12 @@ static void crossings_of_random_lines_agree_with_a_dense_search(void **state)
         with[n]++;
         scene_geometry_destroy(a);
     }
-    print_message("%d lines, %ld crossings, %ld of rings; %ld with two, %ld with four, %ld with six; %ld close pairs that the search "
+    print_message("%d lines, %ld crossings, %ld of rings; %ld with two, %ld with four, %ld with six; %ld close pairs "
+                  "that the search "
                   "missed; sides: %ld convex, %ld concave, %ld with a turn; errors are at most %.3f of the bound for "
                   "points, %.3f along rays\n",
-                  lines, crossings, on_rings, with[2], with[4], with[6], unseen, forms[LENS_CONVEX], forms[LENS_CONCAVE],
-                  forms[LENS_ONE_TURN], worst, worst_along);
+                  lines, crossings, on_rings, with[2], with[4], with[6], unseen, forms[LENS_CONVEX],
+                  forms[LENS_CONCAVE], forms[LENS_ONE_TURN], worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
     assert_true(with[2] > lines / 4 && with[4] > lines / 134 && with[6] > lines / 8000);
     assert_true(on_rings > lines / 20 && forms[LENS_CONVEX] > lines / 10 && forms[LENS_CONCAVE] > lines / 10 &&
@@ -237,7 +238,8 @@ static void normals_are_those_of_the_derivative(void **state)
         s.position = s.rotation_deg = vec3_make(0.0, 0.0, 0.0);
         scene_geometry *a = scene_geometry_of(&s, 1);
         const int k = random_below(&seed, 2);
-        const double rho = 0.998 * side_radius(&s, k) * sqrt(random_real(&seed, 1e-6, 1.0)), turn = random_real(&seed, 0, 6.3);
+        const double rho = 0.998 * side_radius(&s, k) * sqrt(random_real(&seed, 1e-6, 1.0)),
+                     turn = random_real(&seed, 0, 6.3);
         const vec3 d = vec3_make(0.0, k == 0 ? 1.0 : -1.0, 0.0),
                    o = vec3_make(rho * cos(turn), k == 0 ? -3.0 * s.diameter : 9.0 * s.diameter, rho * sin(turn));
         const one_hit h = nearest_interface(a, (one_ray){o, d, FACE_NONE, 0});
@@ -443,8 +445,8 @@ static void expect_refused(solid_shape s, const char *what, const char *remedy)
         fail_msg("'%s; %s' does not contain '%s' and '%s'", why.what, why.remedy, what, remedy);
 }
 
-/* A side of its own diameter: a spherical cap of height h and radius a has the volume pi h (3 a^2 + h^2) / 6, and what is
- * beyond it is level. The outer side of this fisheye's first element is 60 wide, its inner one a hemisphere of 30. */
+/* A side of its own diameter: a spherical cap of height h and radius a has the volume pi h (3 a^2 + h^2) / 6, and what
+ * is beyond it is level. The outer side of this fisheye's first element is 60 wide, its inner one a hemisphere of 30. */
 static void a_hemisphere_within_a_wider_rim(void **state)
 {
     (void)state;
@@ -459,10 +461,12 @@ static void a_hemisphere_within_a_wider_rim(void **state)
     assert_int_equal(solid_shape_check(&s, NULL), STATUS_OK);
     solid_shape whole = s;
     whole.diameter_2 = 0.0;
-    expect_refused(whole, "diameter 62 is larger than side 2, which ends at a diameter of 30", "a diameter_2 of at most 30");
-    const double sag = 50.0 - 40.0, bowl = pi * sag * (3.0 * 900.0 + sag * sag) / 6.0, half_ball = 2.0 / 3.0 * pi * 3375.0;
-    /* From the vertex of side 1 to the ring of side 2, at 18: the cylinder, without what is below side 1 or its ring, and
-     * without the hemisphere. Below side 1: the cylinder up to its ring at 10, less the bowl. */
+    expect_refused(whole, "diameter 62 is larger than side 2, which ends at a diameter of 30",
+                   "a diameter_2 of at most 30");
+    const double sag = 50.0 - 40.0, bowl = pi * sag * (3.0 * 900.0 + sag * sag) / 6.0,
+                 half_ball = 2.0 / 3.0 * pi * 3375.0;
+    /* From the vertex of side 1 to the ring of side 2, at 18: the cylinder, without what is below side 1 or its ring,
+     * and without the hemisphere. Below side 1: the cylinder up to its ring at 10, less the bowl. */
     const double volume = pi * 961.0 * 18.0 - (pi * 961.0 * sag - bowl) - half_ball;
     scene_geometry *a = scene_geometry_of(&s, 1);
     const bounds3 box = shape_world_box(&s);
@@ -576,10 +580,10 @@ static void impossible_aspheres_are_refused(void **state)
     s.even_1[0] = -5.0; /* a slope of 20 at the rim */
     expect_refused(s, "side 1 is too steep", "a diameter of at most 1.8");
     s.even_1[0] = -1e9;
-    expect_refused(s, "side 1 is too steep", "use a smaller diameter, or smaller coefficients a4_1");
+    expect_refused(s, "side 1 is too steep", "use a smaller diameter, or smaller coefficients of side 1");
     s = flat;
     s.even_1[0] = 1.0, s.even_1[1] = -2.5, s.even_1[2] = 1.5; /* it bends up, down and up */
-    expect_refused(s, "side 1 turns more than once", "a4_1 to a8_1");
+    expect_refused(s, "side 1 turns more than once", "smaller coefficients of side 1");
     s = flat;
     s.diameter_2 = 2.5;
     expect_refused(s, "diameter_2 2.5 is larger than the diameter 2", "a diameter of at least 2.5");
