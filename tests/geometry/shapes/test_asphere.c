@@ -446,7 +446,8 @@ static void expect_refused(solid_shape s, const char *what, const char *remedy)
 }
 
 /* A side of its own diameter: a spherical cap of height h and radius a has the volume pi h (3 a^2 + h^2) / 6, and what
- * is beyond it is level. The outer side of this fisheye's first element is 60 wide, its inner one a hemisphere of 30. */
+ * is beyond it is level. The outer side of this fisheye's first element is 60 wide, its inner one half a ball of
+ * diameter 30. */
 static void a_hemisphere_within_a_wider_rim(void **state)
 {
     (void)state;
