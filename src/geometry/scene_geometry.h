@@ -58,14 +58,21 @@ typedef struct primitive {
     double second_radius; /* a second radius, for kinds that have one */
     int sides;            /* number of equal sides around the axis; 0 for none */
     const vec3 *normals;  /* of the sides; owned by the scene geometry */
-    /* The surface of a liquid (capillary_profile), or what the sides of a lens have besides conics (lens_details); NULL
-     * for none. Owned by the scene geometry. */
+    /* The surface of a liquid (capillary_profile), what the sides of a lens have besides conics (lens_details), or the
+     * primitive that this one is when scaled (scaled_primitive); NULL for none. Owned by the scene geometry. */
     const void *details;
     int64_t first_face;
     int rows;           /* number of its scratch rows: the most intervals that a ray can have in it */
     int priority_index; /* of its region */
     double extent;      /* farthest finite coordinate from the world's origin, for error bounds */
 } primitive;
+
+/* A primitive in a frame that is scaled along its axes (primitives/scaled_kernel.c): at the origin, with a rotation by 0
+ * that counts as one, so that its functions use nothing that upright primitives share. */
+typedef struct scaled_primitive {
+    vec3 scale, inverse; /* not 0; 1 / scale */
+    primitive inner;
+} scaled_primitive;
 
 typedef struct region {
     int outside, hollow; /* primitives; hollow = -1 for none */

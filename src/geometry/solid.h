@@ -45,7 +45,7 @@ typedef struct solid_shape {
     vec3 size;
     const struct mesh *mesh;   /* NULL until loaded */
     const struct mesh *points; /* a copy of the solid is at each vertex; NULL: one solid, or not loaded */
-    vec3 scale;                /* not 0; of the mesh, or of the points */
+    vec3 scale;                /* of the solid, or of the points: see shape_is_scaled; all 0: none */
     vec3 copies;               /* integers from 1, along the axes of the local frame */
     vec3 spacing;              /* between copies, in the local frame */
 } solid_shape;

@@ -239,7 +239,7 @@ static bool is_plain(const scene *s, const material *m)
 bool looks_the_same(const inert_case *c)
 {
     /* The depth buffer rasterises a sphere as triangles, which rotate with it. */
-    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || is_drawn(c->s))
+    if (!shape_is_isotropic(&c->owner->shape) || !is_plain(c->s, c->m) || is_drawn(c->s))
         return false;
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
     const inert_remedy remedy = shows_color(c->s, c->m)
@@ -274,13 +274,6 @@ bool no_point_files(const inert_case *c)
         if (!c->s->meshes[i].data || c->s->meshes[i].data->triangle_count == 0)
             return false;
     return inert_say(c, "no-point-files", "add one under meshes:", "the scene has no file of points");
-}
-
-bool no_points(const inert_case *c)
-{
-    return !shape_of(&c->owner->shape)->triangles && !c->owner->points[0] &&
-           inert_say(c, "no-points", "add a file of points under meshes:, and set points to its name",
-                     "only a mesh and points have a scale");
 }
 
 /* --- meshes and textures --- */

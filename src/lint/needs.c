@@ -226,7 +226,6 @@ static const needs_row rows[] = {
     FACT(SOLID, "shading", unshaded),
     FACT(SOLID, "mesh", one_mesh),
     FACT(SOLID, "points", no_point_files),
-    FACT(SOLID, "scale", no_points),
     NEEDS_SET(SOLID, "conic_1", "radius_1!=0", "%.radius_1=2"),
     NEEDS_SET(SOLID, "conic_2", "radius_2!=0", "%.radius_2=-2"),
     NEEDS_SET(SOLID, "contact_angle_deg contact_radius", "capillary_length>0", "%.capillary_length=0.1"),

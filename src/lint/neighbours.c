@@ -535,7 +535,7 @@ status lint_neighbours(const lint_input *input, diagnostic *why)
         const solid_shape shape = scene_geometry_shape(a, r);
         if (!shape.mesh || shape.mesh->closed) /* an open mesh contains nothing */
             all[count++] = (neighbour){&a->regions[r], lint_solid(input, r), shape_world_box(&shape),
-                                       shape_of(&shape)->thickness(&shape), r};
+                                       shape_thickness(&shape), r};
     }
     const status code = allocated ? examine_all(input, all, count, gap, middle, &noted, why) : out_of_memory(why);
     free(all);

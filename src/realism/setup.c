@@ -1,5 +1,6 @@
 /* The solids and the camera of a scene as numbers, and copies of a scene with some of its media in other solids. */
 #include "realism/setup.h"
+#include "geometry/shapes/shape.h"
 
 #include "scene/model/medium.h"
 #include "scene/model/open.h"
@@ -16,7 +17,7 @@ static status unsuitable(const scene *s, diagnostic *why, const char *remedy, co
 static bool is_turned(const solid *one)
 {
     const vec3 r = one->shape.rotation_deg;
-    return r.x != 0.0 || r.y != 0.0 || r.z != 0.0;
+    return r.x != 0.0 || r.y != 0.0 || r.z != 0.0 || shape_is_scaled(&one->shape);
 }
 
 static int find_visible(const scene *s, const char *name)
@@ -47,8 +48,8 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
         return unsuitable(s, why, "set vessel.m to 1: the closed forms require a round vessel",
                           "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
-        return unsuitable(s, why, "set its rotation to 0, and its transparency above 0",
-                          "the vessel is rotated or opaque");
+        return unsuitable(s, why, "set its rotation to 0, its scale to 1,1,1, and its transparency above 0",
+                          "the vessel is rotated, scaled or opaque");
     out->x = vessel->shape.position.x, out->z = vessel->shape.position.z;
     out->outer = vessel->shape.radius, out->inner = vessel->shape.inner_radius;
     out->low = vessel->shape.position.y + vessel->shape.floor;

@@ -30,7 +30,7 @@ void diagram_include_solid(diagram_box *box, const section_plane *plane, const s
     const shape_rule *rule = shape_of(shape);
     if (rule->unbounded || rule->triangles || one->points[0])
         return;
-    const bounds3 b = rule->extent(shape).box;
+    const bounds3 b = shape_extent_of(shape).box;
     const mat3 rotation = rotation_from_deg(shape->rotation_deg);
     for (int k = 0; k < 8; k++) {
         const vec3 corner =

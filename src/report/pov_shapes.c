@@ -58,6 +58,8 @@ void pov_placement_write(const solid_shape *shape, FILE *out)
     const vec3 r = shape->rotation_deg, p = shape->position;
     const mat3 m = rotation_from_deg(r);
     const vec3 *row = m.row;
+    if (shape_is_scaled(shape))
+        PUT(out, " scale <#, #, #>", shape->scale.x, shape->scale.y, shape->scale.z);
     if (r.x != 0.0 || r.y != 0.0 || r.z != 0.0) /* POV-Ray multiplies a row by the matrix */
         PUT(out, " matrix <#, #, #, #, #, #, #, #, #, #, #, #>", row[0].x, row[1].x, row[2].x, row[0].y, row[1].y,
             row[2].y, row[0].z, row[1].z, row[2].z, p.x, p.y, p.z);
@@ -247,9 +249,11 @@ bool pov_shape_can_inset(const solid_shape *shape)
 status pov_shape_write(const solid_shape *shape, double inset, FILE *out, bool *exact, diagnostic *why)
 {
     const shape_rule *rule = shape_of(shape);
+    const vec3 k = shape->scale; /* applied with the placement; it multiplies the inset, which is an upper limit */
+    const double most = shape_is_scaled(shape) ? fmax(fabs(k.x), fmax(fabs(k.y), fabs(k.z))) : 1.0;
     for (size_t i = 0; i < FORMS; i++)
         if (forms[i].rule == rule && (!forms[i].applies || forms[i].applies(shape))) {
-            forms[i].write(shape, inset, out);
+            forms[i].write(shape, inset / most, out);
             return STATUS_OK;
         }
     mesh *m = NULL;

@@ -269,7 +269,7 @@ static status find_meetings(solids *v)
         one->shape = scene_geometry_shape(v->to.g, r);
         const shape_rule *rule = shape_of(&one->shape);
         one->box = shape_world_box(&one->shape);
-        one->margin = fmin(margin, rule->thickness ? rule->thickness(&one->shape) / 8.0 : margin);
+        one->margin = fmin(margin, rule->thickness ? shape_thickness(&one->shape) / 8.0 : margin);
     }
     for (int r = 1; r <= v->to.g->region_count; r++) /* each pair with a clear solid once */
         for (int other = 1; other <= v->to.g->region_count && export_is_clear(v->to.w, r); other++)

@@ -294,9 +294,7 @@ static void add_node(gltf *g, int r, const solid_shape *shape, json_int_t number
 {
     const shape_rule *rule = shape_of(shape);
     const mat3 turn = rotation_from_deg(shape->rotation_deg);
-    const vec3 scale = rule->triangles            ? shape->scale
-                       : rule->tessellation_scale ? rule->tessellation_scale(shape)
-                                                  : vec3_make(1.0, 1.0, 1.0);
+    const vec3 scale = rule->triangles ? shape->scale : shape_tessellation_scale(shape);
     const vec3 x = vec3_scale(placed_axis(&turn, 0), scale.x), y = vec3_scale(placed_axis(&turn, 1), scale.y),
                z = vec3_scale(placed_axis(&turn, 2), scale.z),
                origin = vec3_add(shape->position, mat3_apply(turn, offset));

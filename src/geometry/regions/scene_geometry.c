@@ -49,13 +49,18 @@ static const vec3 *add_normals(scene_geometry *g, int sides)
     return normals;
 }
 
+static int rows_of(const primitive *p)
+{
+    return p->rule ? p->rule->ISA_BASELINE->intervals : 1;
+}
+
 static void add_primitive(scene_geometry *g, int priority_index, const primitive *part)
 {
     primitive *p = &g->primitives[g->primitive_count];
     *p = *part;
     p->priority_index = priority_index;
     p->first_face = (int64_t)g->primitive_count++ * FACES_MAX;
-    p->rows = p->rule ? p->rule->ISA_BASELINE->intervals : 1;
+    p->rows = rows_of(p);
     p->normals = p->sides > 0 ? add_normals(g, p->sides) : NULL;
     if (p->extent > g->extent)
         g->extent = p->extent;
@@ -63,11 +68,23 @@ static void add_primitive(scene_geometry *g, int priority_index, const primitive
         g->primitives[g->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
 }
 
-/* The bytes of a shape's details, in units that keep those of the next shape aligned. */
-static size_t detail_space(const solid_shape *s)
+/* The bytes of the details of a shape's primitive, in units that keep the next ones aligned. */
+static size_t detail_space(const solid_shape *s, int k)
 {
     const size_t unit = _Alignof(max_align_t);
-    return shape_of(s)->details ? (shape_of(s)->details(s, NULL) + unit - 1) / unit * unit : 0;
+    return (shape_details(s, k, NULL) + unit - 1) / unit * unit;
+}
+
+/* The details of a shape's primitive, number k; NULL for none. */
+static void *add_details(scene_geometry *g, const solid_shape *s, int k)
+{
+    const size_t space = detail_space(s, k);
+    if (space == 0)
+        return NULL;
+    char *out = g->details + g->detail_bytes;
+    shape_details(s, k, out);
+    g->detail_bytes += space;
+    return out;
 }
 
 static void add_region(scene_geometry *g, int priority_index, const region_source *source)
@@ -77,17 +94,12 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
     const int n = shape->primitive_count;
     const solid_shape placed = scene_geometry_shape(g, priority_index);
     const uint32_t copy = g->origins[priority_index].copy;
-    shape->primitives(&placed, parts);
-    if (shape->details && detail_space(&placed) > 0) {
-        parts[0].details = g->details + g->detail_bytes;
-        shape->details(&placed, g->details + g->detail_bytes);
-        g->detail_bytes += detail_space(&placed);
-    }
+    shape_primitives(&placed, parts);
     if (!source->opaque && priority_index > g->highest_transparent)
         g->highest_transparent = priority_index;
     region *b = &g->regions[priority_index];
     *b = (region){.outside = g->primitive_count,
-                  .hollow = n == 2 ? g->primitive_count + 1 : -1,
+                  .hollow = n == 2 ? g->primitive_count + rows_of(&parts[0]) : -1,
                   .medium = copy > 0 && source->further_media ? source->further_media + copy : source->medium,
                   .opaque = source->opaque,
                   .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
@@ -98,8 +110,14 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
                   .solid = source->solid};
     g->attenuates |= b->attenuates;
     g->partial |= b->partial;
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; k++) {
+        void *const details = add_details(g, &placed, k);
+        const int at = g->primitive_count;
+        parts[k].details = details;
         add_primitive(g, priority_index, &parts[k]);
+        if (shape_is_scaled(&placed))
+            ((scaled_primitive *)details)->inner.normals = g->primitives[at].normals;
+    }
 }
 
 /* Only for a geometry without a tree: with many solids there are nearly always equal media. */
@@ -156,7 +174,8 @@ static primitive_counts count_primitives(const region_source *sources, int count
         n.all += places;
         n.findable += can_be_in_tree(&sources[i]) ? places : 0;
         n.normals += copies * (size_t)sources[i].shape->sides;
-        n.details += copies * detail_space(sources[i].shape);
+        for (int k = 0; k < shape_of(sources[i].shape)->primitive_count; k++)
+            n.details += copies * detail_space(sources[i].shape, k);
         n.meshes |= shape_of(sources[i].shape)->triangles;
     }
     return n;

@@ -69,7 +69,7 @@ double placed_limit(const placed_shape *placed, vec3 direction)
 {
     const solid_shape *shape = &placed->shape;
     const vec3 local = mat3_apply_transposed(placed->turn, direction);
-    return vec3_dot(direction, shape->position) + (placed->rule->farthest(shape, local) + points_reach(shape, local));
+    return vec3_dot(direction, shape->position) + (shape_farthest(shape, local) + points_reach(shape, local));
 }
 
 double placed_farthest(const placed_shape *placed, vec3 direction)
@@ -94,9 +94,9 @@ double placed_farthest_from(const placed_shape *placed, const round_frame *frame
     const shape_rule *rule = placed->rule;
     if (rule->unbounded || shape->points) /* points: not needed */
         return INFINITY;
-    if (rule->farthest_from)
+    if (rule->farthest_from && !shape_is_scaled(shape))
         return rule->farthest_from(placed, frame);
-    const bounds3 box = rule->extent(shape).box;
+    const bounds3 box = shape_extent_of(shape).box;
     double most = -INFINITY;
     for (int i = 0; i < 8; i++) {
         const vec3 corner = mat3_apply(placed->turn, corner_of(box, i));

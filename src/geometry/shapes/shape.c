@@ -1,5 +1,6 @@
 /* The table of shapes, and queries that every shape answers. */
-#include "geometry/shapes/shape.h"
+#include "geometry/shapes/parts.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/scene_geometry.h"
 #include <math.h>
 #include <string.h>
@@ -44,6 +45,39 @@ const shape_rule *shape_of(const solid_shape *shape)
     return rules[shape->kind];
 }
 
+/* --- scale --- */
+
+PRIMITIVE_RULE(scaled_1);
+PRIMITIVE_RULE(scaled_2);
+PRIMITIVE_RULE(scaled_3);
+
+static bool is_unset(vec3 scale)
+{
+    return scale.x == 0.0 && scale.y == 0.0 && scale.z == 0.0;
+}
+
+bool shape_is_scaled(const solid_shape *s)
+{
+    const vec3 k = s->scale;
+    const bool plain = (k.x == 1.0 && k.y == 1.0 && k.z == 1.0) || is_unset(k);
+    return !plain && !s->points && !shape_of(s)->triangles && !shape_of(s)->unbounded;
+}
+
+static vec3 divided(vec3 a, vec3 b)
+{
+    return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
+}
+
+static vec3 multiplied(vec3 a, vec3 b)
+{
+    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+static vec3 sizes(vec3 v)
+{
+    return vec3_make(fabs(v.x), fabs(v.y), fabs(v.z));
+}
+
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
     if (!vec3_is_finite(shape->position) || !vec3_is_finite(shape->rotation_deg))
@@ -51,6 +85,10 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
     const shape_rule *rule = shape_of_kind(shape->kind);
     if (!rule)
         return diagnose(why, STATUS_BAD_INPUT, "", "unknown shape");
+    const vec3 k = shape->scale;
+    if (!rule->triangles && !is_unset(k) && !(vec3_is_finite(k) && k.x != 0.0 && k.y != 0.0 && k.z != 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "use scales other than 0, and finite numbers", "scale is %g, %g, %g", k.x,
+                        k.y, k.z);
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 
@@ -65,11 +103,108 @@ solid_shape solid_shape_copy(const solid_shape *shape, size_t i)
     copy.points = NULL;
     if (!shape->points)
         return copy;
+    if (!shape_of(shape)->triangles)
+        copy.scale = vec3_make(1.0, 1.0, 1.0);
     const vec3 p = shape->points->vertices[i], turned = shape->rotation_deg,
                scaled = vec3_make(shape->scale.x * p.x, shape->scale.y * p.y, shape->scale.z * p.z);
     const bool upright = turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0;
     copy.position = vec3_add(shape->position, upright ? scaled : mat3_apply(rotation_from_deg(turned), scaled));
     return copy;
+}
+
+bool shape_is_isotropic(const solid_shape *s)
+{
+    const vec3 k = sizes(s->scale);
+    return shape_of(s)->isotropic && (!shape_is_scaled(s) || (k.x == k.y && k.y == k.z));
+}
+
+shape_extent shape_extent_of(const solid_shape *s)
+{
+    shape_extent e = shape_of(s)->extent(s);
+    if (!shape_is_scaled(s))
+        return e;
+    const vec3 a = multiplied(e.box.low, s->scale), b = multiplied(e.box.high, s->scale), k = sizes(s->scale);
+    e.box.low = vec3_make(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
+    e.box.high = vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+    e.ball = fmin(e.ball * fmax(k.x, fmax(k.y, k.z)), 0.5 * vec3_length(vec3_sub(e.box.high, e.box.low)));
+    return e;
+}
+
+/* d . (K p) = (K d) . p for the diagonal matrix K of the scale. */
+double shape_farthest(const solid_shape *s, vec3 d)
+{
+    if (!shape_is_scaled(s))
+        return shape_of(s)->farthest(s, d);
+    const vec3 along = multiplied(d, s->scale);
+    const double length = vec3_length(along);
+    return length * shape_of(s)->farthest(s, vec3_scale(along, 1.0 / length));
+}
+
+double shape_thickness(const solid_shape *s)
+{
+    const vec3 k = sizes(s->scale);
+    return shape_of(s)->thickness(s) * (shape_is_scaled(s) ? fmin(k.x, fmin(k.y, k.z)) : 1.0);
+}
+
+int shape_rings(const solid_shape *s, shape_ring out[RINGS_MAX])
+{
+    const int count = shape_of(s)->rings(s, out);
+    for (int i = 0; i < count && shape_is_scaled(s); i++)
+        out[i].x *= s->scale.x, out[i].y *= s->scale.y, out[i].z *= s->scale.z;
+    return count;
+}
+
+vec3 shape_tessellation_scale(const solid_shape *s)
+{
+    const shape_rule *rule = shape_of(s);
+    const vec3 own = rule->tessellation_scale ? rule->tessellation_scale(s) : vec3_make(1.0, 1.0, 1.0);
+    return shape_is_scaled(s) ? multiplied(own, s->scale) : own;
+}
+
+/* The shape without place and scale. */
+static solid_shape unscaled(const solid_shape *s)
+{
+    solid_shape inner = *s;
+    inner.position = inner.rotation_deg = vec3_make(0.0, 0.0, 0.0);
+    inner.scale = vec3_make(1.0, 1.0, 1.0);
+    return inner;
+}
+
+void shape_primitives(const solid_shape *s, primitive *parts)
+{
+    const shape_rule *rule = shape_of(s);
+    if (!shape_is_scaled(s)) {
+        rule->primitives(s, parts);
+        return;
+    }
+    const solid_shape own = unscaled(s);
+    primitive inner[SHAPE_PRIMITIVES];
+    rule->primitives(&own, inner);
+    const vec3 k = sizes(s->scale);
+    for (int i = 0; i < rule->primitive_count; i++) {
+        const primitive_rule *const by_intervals[] = {&scaled_1_rule, &scaled_2_rule, &scaled_3_rule};
+        parts[i] = primitive_placed(s, by_intervals[inner[i].rule->ISA_BASELINE->intervals - 1], inner[i].extent * fmax(k.x, fmax(k.y, k.z)));
+        parts[i].sides = inner[i].sides;
+    }
+}
+
+size_t shape_details(const solid_shape *s, int k, void *out)
+{
+    const shape_rule *rule = shape_of(s);
+    if (!shape_is_scaled(s))
+        return rule->details && k == 0 ? rule->details(s, out) : 0;
+    const solid_shape own = unscaled(s);
+    const size_t more = rule->details && k == 0 ? rule->details(&own, NULL) : 0;
+    scaled_primitive *const d = out;
+    if (d) {
+        primitive inner[SHAPE_PRIMITIVES];
+        rule->primitives(&own, inner);
+        *d = (scaled_primitive){s->scale, divided(vec3_make(1.0, 1.0, 1.0), s->scale), inner[k]};
+        d->inner.turned = true;
+        if (more > 0)
+            rule->details(&own, d + 1), d->inner.details = d + 1;
+    }
+    return sizeof(scaled_primitive) + more;
 }
 
 bool solid_shape_contains(const solid_shape *shape, vec3 point)
@@ -78,9 +213,9 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     const vec3 from_center = vec3_sub(point, shape->position), turned = shape->rotation_deg;
     if (!rule->contains || shape->points)
         return false;
-    if (turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0) /* the common case; drawings call this often */
-        return rule->contains(shape, from_center);
-    return rule->contains(shape, mat3_apply_transposed(rotation_from_deg(turned), from_center));
+    const bool upright = turned.x == 0.0 && turned.y == 0.0 && turned.z == 0.0; /* often so, for drawings */
+    const vec3 local = upright ? from_center : mat3_apply_transposed(rotation_from_deg(turned), from_center);
+    return rule->contains(shape, shape_is_scaled(shape) ? divided(local, shape->scale) : local);
 }
 
 placed_shape shape_placed(const solid_shape *shape)
@@ -92,7 +227,7 @@ double shape_reach(const solid_shape *shape, vec3 d)
 {
     const shape_rule *rule = shape_of(shape);
     return points_reach(shape, d) +
-           (rule->triangles ? box_reach(rule->extent(shape).box, d) : rule->farthest(shape, d));
+           (rule->triangles ? box_reach(rule->extent(shape).box, d) : shape_farthest(shape, d));
 }
 
 bounds3 shape_world_box(const solid_shape *shape)
@@ -126,6 +261,8 @@ static bool flat_at(const solid_shape *s, size_t i, flat *out)
     const shape_rule *rule = shape_of(s);
     if (!rule->flat || !rule->flat(s, i, &normal, &point))
         return false;
+    if (shape_is_scaled(s))
+        normal = divided(normal, s->scale), point = multiplied(point, s->scale);
     const mat3 turn = rotation_from_deg(s->rotation_deg);
     out->n = mat3_apply(turn, vec3_normalize(normal));
     out->at = vec3_dot(out->n, vec3_add(s->position, mat3_apply(turn, point)));

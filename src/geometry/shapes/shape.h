@@ -107,6 +107,25 @@ bool shape_has(const shape_rule *rule, const char *parameter);
 /* "surface" for a face without a name. face: of the solid; a hollow's faces start at HOLLOW_FACES. */
 const char *shape_face_name(const shape_rule *rule, int64_t face);
 
+/* --- the functions above for a shape with its scale, which multiplies the local frame's coordinates --- */
+
+/* Whether it is scaled or mirrored; a mesh has its own scale, and that of a solid at points is theirs. */
+bool shape_is_scaled(const solid_shape *shape);
+/* Whether no rotation changes it. */
+bool shape_is_isotropic(const solid_shape *shape);
+/* Not for an unbounded shape. */
+shape_extent shape_extent_of(const solid_shape *shape);
+/* The maximum of d . p over its local points; d: a unit vector. */
+double shape_farthest(const solid_shape *shape, vec3 d);
+/* A lower bound of its thickness, exact without a scale. */
+double shape_thickness(const solid_shape *shape);
+int shape_rings(const solid_shape *shape, shape_ring out[RINGS_MAX]);
+vec3 shape_tessellation_scale(const solid_shape *shape);
+/* Its primitives, as shape_rule.primitives, up to SHAPE_PRIMITIVES; their details are not set. */
+void shape_primitives(const solid_shape *shape, struct primitive *parts);
+/* The bytes of the details of its primitive number k; writes them unless out is NULL. */
+size_t shape_details(const solid_shape *shape, int k, void *out);
+
 /* A point, as a solid that contains nothing else. */
 solid_shape shape_point(vec3 at);
 placed_shape shape_placed(const solid_shape *shape);

@@ -153,8 +153,7 @@ static status add(zbuffer *z, const region *b, int index, diagnostic *why)
     }
     part->plane = rule->unbounded;
     const status code = rule->tessellation ? cut(z, shape, part->hollow, &part->tessellation, why) : STATUS_OK;
-    const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1.0, 1.0, 1.0);
-    part->at = part_of(p, part->tessellation, scale);
+    part->at = part_of(p, part->tessellation, shape_tessellation_scale(shape));
     z->part_count += code == STATUS_OK;
     return code;
 }

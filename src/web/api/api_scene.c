@@ -56,7 +56,7 @@ static json_t *objects_json(const scene *s)
 static json_t *outline_json(const solid_shape *shape)
 {
     shape_ring rings[RINGS_MAX];
-    const int count = shape_of(shape)->rings(shape, rings);
+    const int count = shape_rings(shape, rings);
     json_t *parts = json_array(), *part = NULL;
     for (int i = 0; i < count; i++) {
         const shape_ring *r = &rings[i];

@@ -22,7 +22,7 @@ static bool box_of(const scene *s, const solid *one, container_box *out)
     out->shape = scene_loaded_shape(s, one);
     if (shape_of(&out->shape)->triangles && (!out->shape.mesh || !out->shape.mesh->triangle_count))
         return false;
-    out->box = shape_of(&out->shape)->extent(&out->shape).box;
+    out->box = shape_extent_of(&out->shape).box;
     return true;
 }
 

@@ -61,7 +61,7 @@ bool placement_bounding_sphere(const scene *s, const solid *of, vec3 *centre, do
     const solid_shape shape = with_bounds(s, of, &guess);
     if (shape_of(&shape)->unbounded)
         return false;
-    const shape_extent e = shape_of(&shape)->extent(&shape);
+    const shape_extent e = shape_extent_of(&shape);
     vec3 middle = vec3_scale(vec3_add(e.box.low, e.box.high), 0.5);
     *radius = e.ball;
     if (shape.points) {
