@@ -534,8 +534,8 @@ status lint_neighbours(const lint_input *input, diagnostic *why)
     for (int r = 1; allocated && r <= a->region_count; r++) {
         const solid_shape shape = scene_geometry_shape(a, r);
         if (!shape.mesh || shape.mesh->closed) /* an open mesh contains nothing */
-            all[count++] = (neighbour){&a->regions[r], lint_solid(input, r), shape_world_box(&shape),
-                                       shape_thickness(&shape), r};
+            all[count++] =
+                (neighbour){&a->regions[r], lint_solid(input, r), shape_world_box(&shape), shape_thickness(&shape), r};
     }
     const status code = allocated ? examine_all(input, all, count, gap, middle, &noted, why) : out_of_memory(why);
     free(all);

@@ -155,7 +155,8 @@ status prism_curve(const metrics *m, realism_points *out, diagnostic *why)
 static int drop_of(const scene *s)
 {
     for (size_t i = 0; i < s->solid_count; i++)
-        if (strncmp(s->solids[i].name, "drop", 4) == 0 && shape_is_isotropic(&s->solids[i].shape) && !shape_is_scaled(&s->solids[i].shape))
+        if (strncmp(s->solids[i].name, "drop", 4) == 0 && shape_is_isotropic(&s->solids[i].shape) &&
+            !shape_is_scaled(&s->solids[i].shape))
             return (int)i;
     return -1;
 }

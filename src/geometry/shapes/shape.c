@@ -1,7 +1,7 @@
 /* The table of shapes, and queries that every shape answers. */
-#include "geometry/shapes/parts.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/scene_geometry.h"
+#include "geometry/shapes/parts.h"
 #include <math.h>
 #include <string.h>
 
@@ -87,8 +87,8 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "", "unknown shape");
     const vec3 k = shape->scale;
     if (!rule->triangles && !is_unset(k) && !(vec3_is_finite(k) && k.x != 0.0 && k.y != 0.0 && k.z != 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "use scales other than 0, and finite numbers", "scale is %g, %g, %g", k.x,
-                        k.y, k.z);
+        return diagnose(why, STATUS_BAD_INPUT, "use scales other than 0, and finite numbers", "scale is %g, %g, %g",
+                        k.x, k.y, k.z);
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 
@@ -183,7 +183,8 @@ void shape_primitives(const solid_shape *s, primitive *parts)
     const vec3 k = sizes(s->scale);
     for (int i = 0; i < rule->primitive_count; i++) {
         const primitive_rule *const by_intervals[] = {&scaled_1_rule, &scaled_2_rule, &scaled_3_rule};
-        parts[i] = primitive_placed(s, by_intervals[inner[i].rule->ISA_BASELINE->intervals - 1], inner[i].extent * fmax(k.x, fmax(k.y, k.z)));
+        parts[i] = primitive_placed(s, by_intervals[inner[i].rule->ISA_BASELINE->intervals - 1],
+                                    inner[i].extent * fmax(k.x, fmax(k.y, k.z)));
         parts[i].sides = inner[i].sides;
     }
 }

@@ -52,8 +52,8 @@ const solid *scene_cover(const scene *s, const solid *hidden)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
-        if (rule->covers && !cover->points[0] && !shape_is_scaled(&cover->shape) && scene_has_precedence(cover, hidden) &&
-            !balls_are_apart(&cover->shape, &h.shape, reach)) {
+        if (rule->covers && !cover->points[0] && !shape_is_scaled(&cover->shape) &&
+            scene_has_precedence(cover, hidden) && !balls_are_apart(&cover->shape, &h.shape, reach)) {
             const placed_shape c = place_shape(s, cover);
             if (rule->covers(&c, &h))
                 return cover;

@@ -646,10 +646,10 @@ static const param table[] = {
      "from its position",
      NULL, SHAPE(points), .names = "mesh"},
     {PARAM_SOLID, "scale", PARAM_VECTOR, "", -FAR, FAR, false, "1,1,1",
-     "of the solid, about its position and along its own axes, with its textures; of a solid at points: of the points; a "
+     "of the solid, about its position and along its own axes, with its textures; of a solid at points: of the points; "
+     "a "
      "negative number mirrors",
-     NULL, SHAPE(shape.scale),
-     .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},
+     NULL, SHAPE(shape.scale), .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1",
      "mesh: number of copies along each of its own axes", NULL, SHAPE(shape.copies)},
     {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1",

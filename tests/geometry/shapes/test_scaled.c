@@ -62,8 +62,16 @@ static void expect_same(const solid_shape *scaled, const solid_shape *other, boo
 
 static solid_shape placed(shape_kind kind, uint64_t *seed)
 {
-    solid_shape s = {.kind = kind, .radius = 0.5, .height = 1.2, .m = 1.0, .inner_radius = 0.4, .floor = 0.1,
-                     .sides = 5, .top_radius = 0.2, .tube_radius = 0.15, .size = {0.6, 0.8, 1.0}};
+    solid_shape s = {.kind = kind,
+                     .radius = 0.5,
+                     .height = 1.2,
+                     .m = 1.0,
+                     .inner_radius = 0.4,
+                     .floor = 0.1,
+                     .sides = 5,
+                     .top_radius = 0.2,
+                     .tube_radius = 0.15,
+                     .size = {0.6, 0.8, 1.0}};
     s.radius_1 = 0.9, s.radius_2 = -1.4, s.thickness = 0.5, s.diameter = 1.0;
     s.position = random_point(seed, 0.4);
     s.rotation_deg = random_point(seed, 180.0);

@@ -130,7 +130,8 @@ static void put_sizes(scene *s, status *code, diagnostic *why, const char *name,
         free(text);
     }
     const vec3 low = placement_free(s, where, where->size);
-    put_vector(s, code, why, name, "position", vec3_sub(low, vec3_make(0, shape_extent_of(&fitted.shape).box.low.y, 0)));
+    put_vector(s, code, why, name, "position",
+               vec3_sub(low, vec3_make(0, shape_extent_of(&fitted.shape).box.low.y, 0)));
 }
 
 /* Adds a mesh and a solid that uses it. */
