@@ -52,6 +52,37 @@ bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, ve
     return i < count;
 }
 
+/* --- scale --- */
+
+bool rule_scales(const shape_rule *rule, const solid_shape *s)
+{
+    const vec3 k = s->scale;
+    const bool unset = k.x == 0.0 && k.y == 0.0 && k.z == 0.0;
+    return !unset && (k.x != 1.0 || k.y != 1.0 || k.z != 1.0) && !s->points && !rule->triangles && !rule->unbounded;
+}
+
+shape_extent rule_extent(const shape_rule *rule, const solid_shape *s)
+{
+    shape_extent e = rule->extent(s);
+    if (!rule_scales(rule, s))
+        return e;
+    const vec3 a = multiplied(e.box.low, s->scale), b = multiplied(e.box.high, s->scale), k = sizes(s->scale);
+    e.box.low = vec3_make(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
+    e.box.high = vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+    e.ball = fmin(e.ball * fmax(k.x, fmax(k.y, k.z)), 0.5 * vec3_length(vec3_sub(e.box.high, e.box.low)));
+    return e;
+}
+
+/* d . (K p) = (K d) . p for the diagonal matrix K of the scale. */
+double rule_farthest(const shape_rule *rule, const solid_shape *s, vec3 d)
+{
+    if (!rule_scales(rule, s))
+        return rule->farthest(s, d);
+    const vec3 along = multiplied(d, s->scale);
+    const double length = vec3_length(along);
+    return length * rule->farthest(s, vec3_scale(along, 1.0 / length));
+}
+
 /* --- placed shapes --- */
 
 vec3 placed_axis(const mat3 *turn, int k)
@@ -69,7 +100,8 @@ double placed_limit(const placed_shape *placed, vec3 direction)
 {
     const solid_shape *shape = &placed->shape;
     const vec3 local = mat3_apply_transposed(placed->turn, direction);
-    return vec3_dot(direction, shape->position) + (shape_farthest(shape, local) + points_reach(shape, local));
+    return vec3_dot(direction, shape->position) +
+           (rule_farthest(placed->rule, shape, local) + points_reach(shape, local));
 }
 
 double placed_farthest(const placed_shape *placed, vec3 direction)
@@ -94,9 +126,9 @@ double placed_farthest_from(const placed_shape *placed, const round_frame *frame
     const shape_rule *rule = placed->rule;
     if (rule->unbounded || shape->points) /* points: not needed */
         return INFINITY;
-    if (rule->farthest_from && !shape_is_scaled(shape))
+    if (rule->farthest_from && !rule_scales(rule, shape))
         return rule->farthest_from(placed, frame);
-    const bounds3 box = shape_extent_of(shape).box;
+    const bounds3 box = rule_extent(rule, shape).box;
     double most = -INFINITY;
     for (int i = 0; i < 8; i++) {
         const vec3 corner = mat3_apply(placed->turn, corner_of(box, i));

@@ -49,3 +49,24 @@ static inline bool is_within(double reach, double limit, double length)
 
 /* Whether the hidden shape is between low and high along the cover's axis k. */
 bool placed_is_between(const placed_shape *cover, const placed_shape *hidden, int k, double low, double high);
+
+/* --- scale: shape_is_scaled, shape_extent_of and shape_farthest for a shape of that rule --- */
+
+static inline vec3 divided(vec3 a, vec3 b)
+{
+    return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
+}
+
+static inline vec3 multiplied(vec3 a, vec3 b)
+{
+    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+static inline vec3 sizes(vec3 v)
+{
+    return vec3_make(fabs(v.x), fabs(v.y), fabs(v.z));
+}
+
+bool rule_scales(const shape_rule *rule, const solid_shape *s);
+shape_extent rule_extent(const shape_rule *rule, const solid_shape *s);
+double rule_farthest(const shape_rule *rule, const solid_shape *s, vec3 d);

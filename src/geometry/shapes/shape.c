@@ -47,36 +47,24 @@ const shape_rule *shape_of(const solid_shape *shape)
 
 /* --- scale --- */
 
+bool shape_is_scaled(const solid_shape *s)
+{
+    return rule_scales(shape_of(s), s);
+}
+
+shape_extent shape_extent_of(const solid_shape *s)
+{
+    return rule_extent(shape_of(s), s);
+}
+
+double shape_farthest(const solid_shape *s, vec3 d)
+{
+    return rule_farthest(shape_of(s), s, d);
+}
+
 PRIMITIVE_RULE(scaled_1);
 PRIMITIVE_RULE(scaled_2);
 PRIMITIVE_RULE(scaled_3);
-
-static bool is_unset(vec3 scale)
-{
-    return scale.x == 0.0 && scale.y == 0.0 && scale.z == 0.0;
-}
-
-bool shape_is_scaled(const solid_shape *s)
-{
-    const vec3 k = s->scale;
-    const bool plain = (k.x == 1.0 && k.y == 1.0 && k.z == 1.0) || is_unset(k);
-    return !plain && !s->points && !shape_of(s)->triangles && !shape_of(s)->unbounded;
-}
-
-static vec3 divided(vec3 a, vec3 b)
-{
-    return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
-}
-
-static vec3 multiplied(vec3 a, vec3 b)
-{
-    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
-}
-
-static vec3 sizes(vec3 v)
-{
-    return vec3_make(fabs(v.x), fabs(v.y), fabs(v.z));
-}
 
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
@@ -86,7 +74,8 @@ status solid_shape_check(const solid_shape *shape, diagnostic *why)
     if (!rule)
         return diagnose(why, STATUS_BAD_INPUT, "", "unknown shape");
     const vec3 k = shape->scale;
-    if (!rule->triangles && !is_unset(k) && !(vec3_is_finite(k) && k.x != 0.0 && k.y != 0.0 && k.z != 0.0))
+    if (!rule->triangles && !(k.x == 0.0 && k.y == 0.0 && k.z == 0.0) &&
+        !(vec3_is_finite(k) && k.x != 0.0 && k.y != 0.0 && k.z != 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "use scales other than 0, and finite numbers", "scale is %g, %g, %g",
                         k.x, k.y, k.z);
     return rule->check ? rule->check(shape, why) : STATUS_OK;
@@ -116,28 +105,6 @@ bool shape_is_isotropic(const solid_shape *s)
 {
     const vec3 k = sizes(s->scale);
     return shape_of(s)->isotropic && (!shape_is_scaled(s) || (k.x == k.y && k.y == k.z));
-}
-
-shape_extent shape_extent_of(const solid_shape *s)
-{
-    shape_extent e = shape_of(s)->extent(s);
-    if (!shape_is_scaled(s))
-        return e;
-    const vec3 a = multiplied(e.box.low, s->scale), b = multiplied(e.box.high, s->scale), k = sizes(s->scale);
-    e.box.low = vec3_make(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
-    e.box.high = vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
-    e.ball = fmin(e.ball * fmax(k.x, fmax(k.y, k.z)), 0.5 * vec3_length(vec3_sub(e.box.high, e.box.low)));
-    return e;
-}
-
-/* d . (K p) = (K d) . p for the diagonal matrix K of the scale. */
-double shape_farthest(const solid_shape *s, vec3 d)
-{
-    if (!shape_is_scaled(s))
-        return shape_of(s)->farthest(s, d);
-    const vec3 along = multiplied(d, s->scale);
-    const double length = vec3_length(along);
-    return length * shape_of(s)->farthest(s, vec3_scale(along, 1.0 / length));
 }
 
 double shape_thickness(const solid_shape *s)

@@ -119,8 +119,8 @@ static void a_mirrored_lens_has_its_sides_exchanged(void **state)
     expect_same(&s, &t, false, &seed);
 }
 
-/* The ellipsoid x^2 / a^2 + y^2 / b^2 + z^2 / c^2 = 1: roots of its quadratic, normals (x / a^2, y / b^2, z / c^2), for half
- * axes that differ by up to a factor of 1000. */
+/* The ellipsoid x^2 / a^2 + y^2 / b^2 + z^2 / c^2 = 1: roots of its quadratic, normals (x / a^2, y / b^2, z / c^2), for
+ * half axes that differ by up to a factor of 1000. */
 static void an_ellipsoid_has_the_roots_of_its_quadratic(void **state)
 {
     (void)state;
@@ -160,8 +160,8 @@ static void an_ellipsoid_has_the_roots_of_its_quadratic(void **state)
     assert_true(hits > 4000 && worst <= 1.0 && worst_normal < 1e-12);
 }
 
-/* Of any shape: points of hits are on the surface by quadruple precision, insides alternate, and there is the same number
- * of hits as crossings. */
+/* Of any shape: points of hits are on the surface by quadruple precision, insides alternate, and there is the same
+ * number of hits as crossings. */
 static void hits_of_any_shape_are_on_its_surface(void **state)
 {
     (void)state;
