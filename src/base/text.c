@@ -157,6 +157,24 @@ status text_writer_end(text_writer *writer, status code, char **text, size_t *si
 
 /* ---- words of a shell ---- */
 
+char *text_narrow(const char *text, size_t size)
+{
+    const bool marked_low = size >= 2 && memcmp(text, "\xff\xfe", 2) == 0,
+               marked_high = size >= 2 && memcmp(text, "\xfe\xff", 2) == 0,
+               low_first = marked_low || (size >= 4 && text[0] && !text[1] && text[2] && !text[3]),
+               wide = low_first || marked_high;
+    size_t i = marked_low || marked_high ? 2 : size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    char *plain = malloc(size + 1), *to = plain;
+    for (; plain && i < size; i += wide ? 2 : 1) {
+        const char other = wide && i + 1 < size ? text[i + low_first] : (char)0;
+        const char byte = wide && !low_first && i + 1 < size ? text[i + 1] : text[i];
+        *to++ = (wide && other) || !byte || byte == '\r' ? ' ' : byte;
+    }
+    if (plain)
+        *to = 0;
+    return plain;
+}
+
 void shell_word_write(FILE *out, const char *word)
 {
     if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {

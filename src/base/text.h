@@ -39,6 +39,11 @@ status text_writer_end(text_writer *writer, status code, char **text, size_t *si
 
 /* ---- encodings ---- */
 
+/* The text of a file of another program as bytes and a final 0: of UTF-16, with a byte order mark or without one, the
+ * characters below 128. Other characters of UTF-16, CR, bytes of 0 and the mark of UTF-8 become blanks. NULL when out
+ * of memory. */
+char *text_narrow(const char *text, size_t size);
+
 /* Writes a word of a command line, for a reader who copies it into a shell: in single quotes where a shell would change
  * it. Errors of the stream stay in the stream. */
 void shell_word_write(FILE *out, const char *word);

@@ -22,6 +22,7 @@ status command_trace(int argc, char **argv, diagnostic *why);
 status command_fan(int argc, char **argv, diagnostic *why);
 status command_params(int argc, char **argv, diagnostic *why);
 status command_media(int argc, char **argv, diagnostic *why);
+status command_lens(int argc, char **argv, diagnostic *why);
 status command_mesh(int argc, char **argv, diagnostic *why);
 status command_study(int argc, char **argv, diagnostic *why);
 status command_compare(int argc, char **argv, diagnostic *why);

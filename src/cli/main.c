@@ -22,6 +22,7 @@ static const command commands[] = {
     {"fan", "trace a fan of rays and find its focus and caustic", command_fan},
     {"params", "list all parameters, or those of a scene", command_params},
     {"media", "print the media catalogue: refractive index, dispersion, source", command_media},
+    {"lens", "read a lens prescription; write it as a scene or a lens file", command_lens},
     {"mesh", "describe, generate or convert a triangle mesh", command_mesh},
     {"study", "run and summarise studies (parameter sweeps)", command_study},
     {"compare", "compare two images", command_compare},

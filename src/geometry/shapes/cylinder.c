@@ -184,14 +184,27 @@ const shape_rule shape_cylinder = {
 /* --- cup ---
  *
  * A cylinder of radius, m and height, minus a cylinder of inner_radius and the same m that starts at the height of the
- * floor and is open at the top. Its position is the centre of its base. The ellipses are similar, so that the wall is
- * radius - inner_radius thick along x, and 1 / m of that along z. */
+ * floor and is open at the top; a floor of 0 is a tube or ring, open at both ends. Its position is the centre of its
+ * base. The ellipses are similar, so that the wall is radius - inner_radius thick along x, and 1 / m of that along z.
+ */
+
+static bool is_tube(const solid_shape *shape)
+{
+    return shape->floor == 0.0;
+}
+
+/* The height at which the hollow starts. */
+static double hollow_bottom(const solid_shape *shape)
+{
+    return is_tube(shape) ? -shape->height : shape->floor;
+}
 
 static status cup_check(const solid_shape *shape, diagnostic *why)
 {
     status code = cylinder_check(shape, why);
     THEN(code, check_length(shape->inner_radius, "inner_radius", why));
-    THEN(code, check_length(shape->floor, "floor", why));
+    if (!is_tube(shape))
+        THEN(code, check_length(shape->floor, "floor", why));
     if (code != STATUS_OK)
         return code;
     if (shape->inner_radius >= shape->radius)
@@ -207,18 +220,18 @@ static status cup_check(const solid_shape *shape, diagnostic *why)
 static bool cup_contains(const solid_shape *shape, vec3 p)
 {
     const double m = shape->m, r = shape->inner_radius;
-    return cylinder_contains(shape, p) && !(p.x * p.x + m * m * p.z * p.z < r * r && p.y > shape->floor);
+    return cylinder_contains(shape, p) && !(p.x * p.x + m * m * p.z * p.z < r * r && p.y > hollow_bottom(shape));
 }
 
 static void cup_primitives(const solid_shape *shape, primitive *out)
 {
     out[0] = cylinder_placed(shape, shape->radius, 0.0, shape->height);
-    out[1] = cylinder_placed(shape, shape->inner_radius, shape->floor, HUGE_VAL);
+    out[1] = cylinder_placed(shape, shape->inner_radius, hollow_bottom(shape), HUGE_VAL);
 }
 
 static bool cup_flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
-    return level_faces((const double[]){0.0, shape->height, shape->floor}, 3, i, normal, point);
+    return level_faces((const double[]){0.0, shape->height, shape->floor}, is_tube(shape) ? 2 : 3, i, normal, point);
 }
 
 /* Whether the hidden shape is outside the hollow: below the floor, or to one side of the hollow. */
@@ -243,10 +256,11 @@ static bool cup_covers(const placed_shape *cover, const placed_shape *hidden)
     return cylinder_covers(cover, hidden) && avoids_hollow(cover, hidden);
 }
 
-/* The thickness of the wall or of the floor. */
+/* The thickness of the wall or of the floor; a ring may be thinner than its wall. */
 static double cup_thickness(const solid_shape *shape)
 {
-    return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
+    return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m),
+                is_tube(shape) ? shape->height : shape->floor);
 }
 
 static void cup_fit(solid_shape *shape, double size)
@@ -265,20 +279,24 @@ static int cup_rings(const solid_shape *shape, shape_ring *out)
     return outside + 2;
 }
 
-/* The outside, whose top is a ring, or the wall and floor of the hollow. */
+/* The outside, whose top is a ring, or the wall and floor of the hollow; of a tube both ends are rings. */
 static status cup_tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const double r = shape->radius, inner = shape->inner_radius, low = shape->floor, h = shape->height;
     const profile_point outside[4] = {{0.0, 0.0}, {r, 0.0}, {r, h}, {inner, h}};
     const profile_point hollow[3] = {{0.0, low}, {inner, low}, {inner, h}};
+    if (is_tube(shape)) {
+        const profile_point ends[4] = {{inner, 0.0}, {r, 0.0}, {r, h}, {inner, h}};
+        return part == 0 ? tessellate_lathe(ends, 4, out, why) : tessellate_lathe(hollow + 1, 2, out, why);
+    }
     return part == 0 ? tessellate_lathe(outside, 4, out, why) : tessellate_lathe(hollow, 3, out, why);
 }
 
 const shape_rule shape_cup = {
     .word = "cup",
     .meaning =
-        "a cylinder minus a cylinder of inner_radius that starts at the height of its floor and is open at the top; "
-        "its position is the centre of its base",
+        "a cylinder minus a cylinder of inner_radius that starts at the height of its floor and is open at the top, "
+        "with a floor of 0 also at the bottom; its position is the centre of its base",
     .parameters = WORDS("radius", "height", "m", "inner_radius", "floor", "points", "scale"),
     .hollow = true,
     .curved = true,

@@ -343,22 +343,6 @@ static status scan_catalogue(optical_reader *r, char *text, name_list *names)
     return code == STATUS_OK ? end_glass(r, &g, chosen) : code;
 }
 
-/* The text as bytes: of UTF-16, in which Zemax saves its catalogues, those below 128. */
-static char *plain_text(const char *text, size_t size)
-{
-    const bool low_first = size >= 2 && memcmp(text, "\xff\xfe", 2) == 0,
-               wide = low_first || (size >= 2 && memcmp(text, "\xfe\xff", 2) == 0);
-    char *plain = malloc(size + 1), *to = plain;
-    for (size_t i = wide ? 2 : 0; plain && i < size; i += wide ? 2 : 1) {
-        const char other = wide && i + 1 < size ? text[i + low_first] : (char)0;
-        const char byte = wide && !low_first && i + 1 < size ? text[i + 1] : text[i];
-        *to++ = (wide && other) || !byte || byte == '\r' ? ' ' : byte;
-    }
-    if (plain)
-        *to = 0;
-    return plain;
-}
-
 static status read_catalogue(optical_reader *r, char *text)
 {
     name_list names = {0};
@@ -546,7 +530,7 @@ static status read_text(optical_reader *r, const char *text, size_t size)
 {
     if (ends_in(r->name, ".yml") || ends_in(r->name, ".yaml"))
         return read_database(r, text, size);
-    char *plain = plain_text(text, size);
+    char *plain = text_narrow(text, size);
     if (!plain)
         return out_of_memory(r->why);
     const status code = ends_in(r->name, ".agf") ? read_catalogue(r, plain) : read_table(r, plain);

@@ -28,8 +28,11 @@ typedef enum lens_medium_kind {
 typedef struct lens_medium {
     lens_medium_kind kind;
     char name[LENS_NAME_MAX]; /* as the file writes it; "" for none */
+    int glass_file;           /* LENS_DATA: its catalogue file (lens_glasses); -1: an entry of the scene's data */
     double n_d, V_d;          /* for LENS_MODEL, and where a file states them; V_d is 0 for none */
-    index_law law;            /* by which lens_medium_index computes the index; not for LENS_AIR */
+    index_law law;            /* by which lens_medium_index computes the index; not for LENS_AIR. Of a glass in a
+                                 catalogue file: by its n_d and V_d, until the scene has loaded its data */
+    double around;            /* index of the surroundings if they are not air; 0: air */
 } lens_medium;
 
 typedef struct lens_surface {
@@ -40,6 +43,7 @@ typedef struct lens_surface {
     double thickness;             /* to the next surface; after the last surface, to the image */
     lens_medium medium;           /* after the surface; for a mirror that before it */
     double diameter;              /* clear diameter; 0: not stated */
+    double hole;                  /* diameter of the hole in a mirror; 0: none */
     bool mirror;
     long line; /* in the file; 0: none */
 } lens_surface;
@@ -90,8 +94,35 @@ typedef struct lens_prescription {
 lens_prescription lens_prescription_empty(void);
 void lens_prescription_release(lens_prescription *p);
 
-/* The index relative to the surroundings of the scene: 1 for air. Pure. */
+/* The index relative to the surroundings: 1 for air. Pure. */
 double lens_medium_index(const lens_medium *m, double lambda_nm);
+
+/* Whether two media have the same index at all wavelengths. Pure. */
+bool lens_media_match(const lens_medium *a, const lens_medium *b);
 
 /* The sag of a surface at a radius; NaN beyond the end of its conic. Pure. */
 double lens_surface_sag(const lens_surface *s, double rho);
+
+/* The paraxial properties at one wavelength, in the prescription's unit; distances along +y. Kingslake and Johnson, Lens
+ * Design Fundamentals, 2nd ed., chapter 3. */
+typedef struct lens_first_order {
+    double efl;            /* effective focal length, 1 / power; infinite for an afocal system */
+    double back;           /* from the last vertex to the focus of an object at infinity */
+    double image;          /* from the last vertex to the image of the object */
+    double magnification;  /* of an object at a finite distance; 0 otherwise */
+    double pupil;          /* from the first vertex to the entrance pupil */
+    double pupil_diameter; /* of the entrance pupil; 0: not known */
+    double exit_pupil;     /* from the last vertex to the exit pupil */
+    double stop_diameter;  /* of the beam on the axis at the stop surface; 0: not known */
+    double direction;      /* 1 if light leaves along +y, -1 after an odd number of mirrors */
+    double field_slope;    /* of the chief ray of the outermost field, in the object space */
+    /* by surface: heights of the marginal ray on the axis, and of the chief ray of the outermost field */
+    double marginal[LENS_SURFACES_MAX], chief[LENS_SURFACES_MAX];
+} lens_first_order;
+
+/* A prescription without a stated stop has it at its first surface. Pure. */
+lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
+
+/* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below what
+ * the beam needs at the stop), and the distance of the image if the last thickness is 0. */
+void lens_prescription_complete(lens_prescription *p);

@@ -594,7 +594,8 @@ static const param table[] = {
     LENGTH(inner_radius, "0.9",
            "cup: radius of the hollow; the wall has thickness radius - inner_radius along x, and this divided by m "
            "along z"),
-    LENGTH(floor, "0.1", "cup: thickness of the bottom"),
+    {PARAM_SOLID, "floor", PARAM_REAL, "scene units", 0, FAR, false, "0.1",
+     "cup: thickness of the bottom; 0: none, the cup is a tube or ring", NULL, SHAPE(shape.floor)},
     {PARAM_SOLID, "sides", PARAM_INT, "", 3, 60, false, "6", "prism: number of sides; 3: a triangular base", NULL,
      SHAPE(shape.sides)},
     {PARAM_SOLID, "top_radius", PARAM_REAL, "scene units", 0, FAR, false, "0",

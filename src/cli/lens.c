@@ -1,0 +1,194 @@
+/* `cuvette lens`: reads and writes lens prescriptions, and turns them into scenes and back. */
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/scene_input.h"
+#include "cli/terminal.h"
+#include "scene/file/write.h"
+#include "scene/lens/lens_solids.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { GLASS_FILES_MAX = 16 };
+
+typedef struct lens_request {
+    const char *path, *output, *system;
+    const char *glass_file[GLASS_FILES_MAX];
+    size_t glass_files;
+} lens_request;
+
+static status parse_glasses(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    lens_request *request = context;
+    (void)o;
+    if (request->glass_files == GLASS_FILES_MAX)
+        return options_wrong("--glasses", value, why, "join the catalogues in one file", "more than %d files",
+                             GLASS_FILES_MAX);
+    request->glass_file[request->glass_files++] = value;
+    return STATUS_OK;
+}
+
+static const command_option options[] = {
+    {"glasses", 'g', "FILE", "glass catalogue (.agf) for names that the catalogue of media lacks; may be repeated",
+     .store = parse_glasses},
+    {"system", 0, "NAME", "of a scene: the lens system with that name (default: all its lenses)",
+     OPTION_FILLS(option_text, lens_request, system)},
+    {"output", 'o', "FILE", "write a scene (.yaml) or a lens file (.zmx, .dat, .csv)",
+     OPTION_FILLS(option_text, lens_request, output)},
+    {0},
+};
+
+static const command_form form = {
+    .options = options,
+    .synopsis = "FILE [-o FILE]",
+    .arguments_at = offsetof(lens_request, path),
+    .argument_limit = 1,
+    .excess_remedy = "give one file",
+    .excess = "unexpected argument '%.128s'",
+    .about =
+        "Read the prescription of a lens system from a lens file (.zmx of Zemax, .dat of pbrt, or .csv) or from the "
+        "lenses of a scene, and print its surfaces and paraxial data, or write it as a scene that can be rendered "
+        "at once (.yaml) or as a lens file.\vExamples: cuvette lens triplet.zmx -o triplet.yaml; cuvette lens "
+        "triplet.yaml -o triplet.csv. Manual: cuvette-lens(1).",
+};
+
+/* --- the table --- */
+
+static void print_number(const char *format, double value)
+{
+    if (isfinite(value))
+        printf(format, value);
+    else
+        printf("%14s", "inf");
+}
+
+static void print_surfaces(const lens_prescription *p)
+{
+    char word[LENS_NAME_MAX];
+    printf("%3s %14s %14s %14s %10s  %s\n", "", "radius", "thickness", "diameter", "conic", "medium");
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        bool even = false;
+        for (int k = 0; k < LENS_EVEN_TERMS; k++)
+            even |= s->even[k] != 0.0;
+        printf("%3zu ", i + 1);
+        print_number("%14.7g ", s->radius == 0.0 ? INFINITY : s->radius);
+        printf("%s%14.7g %14.7g %10.5g  %s%s%s\n", s->radius == 0.0 ? " " : "", s->thickness, s->diameter, s->conic,
+               s->mirror ? "mirror" : lens_medium_text(&s->medium, word), even ? ", asphere" : "",
+               p->stop == (int)i ? ", stop" : "");
+    }
+}
+
+static void print_paraxial(const lens_prescription *p)
+{
+    const double nm = p->wavelength[p->primary].nm;
+    const lens_first_order f = lens_first_order_of(p, nm);
+    printf("\nparaxial, at %.10g nm, lengths in units of %.10g mm\n", nm, p->unit_mm);
+    printf("  focal length            %.9g\n  back focal distance     %.9g\n", f.efl, f.back);
+    printf("  image distance          %.9g (last thickness %.9g)\n", f.image, p->surface[p->count - 1].thickness);
+    if (f.pupil_diameter > 0.0) {
+        printf("  entrance pupil          %.9g, diameter %.9g\n", f.pupil, f.pupil_diameter);
+        printf("  exit pupil              %.9g, from the last vertex\n", f.exit_pupil);
+        printf("  f-number                %.6g\n", fabs(f.efl) / f.pupil_diameter);
+    }
+    if (f.magnification != 0.0)
+        printf("  magnification           %.9g\n", f.magnification);
+}
+
+static void print_prescription(const lens_prescription *p)
+{
+    if (p->title[0])
+        printf("%s\n\n", p->title);
+    print_surfaces(p);
+    print_paraxial(p);
+}
+
+/* --- reading and writing --- */
+
+static status read_scene(const lens_request *request, lens_prescription *out, diagnostic *why)
+{
+    const scene_input input = {.path = request->path};
+    scene *s = NULL;
+    status code = scene_input_read(&input, &s, why);
+    THEN(code, scene_input_load(s, why));
+    if (code == STATUS_OK)
+        code = locate_failure(why, request->path, lens_of_scene(s, request->system, out, why));
+    scene_destroy(s);
+    return code;
+}
+
+static status read_prescription(const lens_request *request, const lens_glasses *glasses, lens_prescription *out,
+                                diagnostic *why)
+{
+    *out = lens_prescription_empty();
+    if (!lens_file_named(request->path))
+        return read_scene(request, out, why);
+    if (request->system)
+        return options_wrong("--system", request->system, why, "omit it", "a lens file holds one system");
+    TRY(lens_file_read(request->path, glasses, out, why));
+    if (out->note[0]) {
+        char text[sizeof out->note + 300];
+        snprintf(text, sizeof text, "%.250s: %s", request->path, out->note);
+        terminal_note(text);
+    }
+    return STATUS_OK;
+}
+
+typedef struct lens_text {
+    const lens_prescription *p;
+    const char *path;
+} lens_text;
+
+static status write_text(const void *content, FILE *out, diagnostic *why)
+{
+    const lens_text *t = content;
+    return lens_file_write(t->p, t->path, out, why);
+}
+
+static status write_scene(const lens_prescription *p, const lens_glasses *glasses, const char *path, diagnostic *why)
+{
+    scene *s = NULL;
+    TRY(lens_scene_create(p, glasses, &s, why));
+    status code = scene_check(s, why);
+    THEN(code, scene_write(s, path, false, why));
+    scene_destroy(s);
+    return code;
+}
+
+static status run(const lens_request *request, diagnostic *why)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".zmx", ".dat", ".csv"};
+    const lens_glasses glasses = {request->glass_file, request->glass_files, NULL};
+    lens_prescription p;
+    size_t ending = 0;
+    if (request->output) {
+        TRY(outputs_ending("-o", request->output, endings, 5, "use a name that ends in .yaml, .zmx, .dat or .csv",
+                           &ending, why));
+        TRY(outputs_check_folder("-o", request->output, why));
+        if (outputs_same_entry(request->path, request->output))
+            return options_wrong("-o", request->output, why, "write to another file", "it is the file that is read");
+    }
+    TRY(read_prescription(request, &glasses, &p, why));
+    status code = STATUS_OK;
+    if (!request->output) {
+        print_prescription(&p);
+    } else if (ending < 2) {
+        code = locate_failure(why, request->path, write_scene(&p, &glasses, request->output, why));
+    } else {
+        const lens_text text = {&p, request->output};
+        code = locate_failure(why, request->path, outputs_write_text(request->output, write_text, &text, why));
+    }
+    lens_prescription_release(&p);
+    return code;
+}
+
+status command_lens(int argc, char **argv, diagnostic *why)
+{
+    lens_request request = {0};
+    TRY(command_form_read(&form, argc, argv, &request, why));
+    if (!request.path)
+        return options_wrong("lens", NULL, why, "give a lens file (.zmx, .dat, .csv) or a scene", "no file is given");
+    return run(&request, why);
+}

@@ -1,0 +1,424 @@
+/* Reads lens files: tables (.dat of pbrt, .csv); lens_zmx.c reads those of Zemax (lens_files.h).
+ *
+ * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
+ * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or field_height
+ * with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns: radius (0, empty
+ * or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop (any text but 0),
+ * hole, name; all but radius and thickness may be missing. */
+#include "scene/lens/lens_files.h"
+#include "base/array.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/lens/lens_reader.h"
+#include "scene/model/names.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { LENS_BYTES_MAX = 1 << 24 };
+
+/* --- common parts --- */
+
+status lens_wrong(const lens_reader *r, int word, const char *remedy, const char *what, ...)
+{
+    char text[400];
+    va_list list;
+    va_start(list, what);
+    vsnprintf(text, sizeof text, what, list);
+    va_end(list);
+    const status code = diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s", text);
+    diagnostic_locate(r->why, r->name, r->line, word >= 0 && word < r->count ? r->column[word] : 0);
+    return code;
+}
+
+void lens_note(lens_prescription *p, const char *format, ...)
+{
+    const size_t used = strlen(p->note);
+    char text[200];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (used + strlen(text) + 3 < sizeof p->note)
+        snprintf(p->note + used, sizeof p->note - used, "%s%s", used ? "; " : "", text);
+}
+
+void lens_divide(lens_reader *r, char *line, bool commas)
+{
+    const char *blanks = " \t\r", *start = line;
+    r->count = 0;
+    for (char *at = line; at && r->count < LENS_WORDS_MAX;) {
+        at += strspn(at, blanks);
+        if (!*at && !commas)
+            break;
+        char *end = at + strcspn(at, commas ? "," : blanks), *last = end;
+        const bool more = *end != 0;
+        while (commas && last > at && strchr(blanks, last[-1]))
+            last--;
+        *last = *end = 0;
+        r->word[r->count] = at;
+        r->column[r->count++] = (int)(at - start) + 1;
+        at = more ? end + 1 : NULL;
+    }
+}
+
+status lens_number(const lens_reader *r, int i, const char *what, double *out)
+{
+    if (i >= r->count)
+        return lens_wrong(r, -1, "complete the line", "%s is missing", what);
+    if (!number_parse_real(r->word[i], out) || !isfinite(*out))
+        return lens_wrong(r, i, "give a number, such as 12.5", "%s: '%.40s' is not a number", what, r->word[i]);
+    return STATUS_OK;
+}
+
+lens_surface *lens_append(lens_reader *r, status *code)
+{
+    lens_prescription *p = r->p;
+    if (p->count >= LENS_SURFACES_MAX) {
+        *code = lens_wrong(r, -1, "divide the system", "more than %d surfaces", LENS_SURFACES_MAX);
+        return NULL;
+    }
+    if (!GROW(p->surface, r->room, p->count + 1)) {
+        *code = out_of_memory(r->why);
+        return NULL;
+    }
+    lens_surface *s = &p->surface[p->count++];
+    *s = (lens_surface){.medium = {.kind = LENS_AIR, .glass_file = -1}, .line = r->line};
+    return s;
+}
+
+status lens_read_medium(const lens_reader *r, int i, const char *word, lens_medium *out)
+{
+    diagnostic bad = {.what = ""};
+    const status code = lens_medium_parse(word, r->glasses, out, &bad);
+    if (code == STATUS_BAD_INPUT && !bad.file[0])
+        return lens_wrong(r, i, bad.remedy, "%s", bad.what);
+    if (code != STATUS_OK && r->why)
+        *r->why = bad;
+    return code;
+}
+
+/* --- .dat --- */
+
+static status read_dat_row(lens_reader *r, bool *has_stop)
+{
+    double n, diameter;
+    status code = STATUS_OK;
+    lens_surface *s = lens_append(r, &code);
+    if (!s)
+        return code;
+    TRY(lens_number(r, 0, "the radius", &s->radius));
+    TRY(lens_number(r, 1, "the thickness", &s->thickness));
+    TRY(lens_number(r, 2, "the index", &n));
+    TRY(lens_number(r, 3, "the diameter", &diameter));
+    double V = 0.0;
+    if (r->count > 4)
+        TRY(lens_number(r, 4, "the Abbe number", &V));
+    if (n != 0.0 && !(n >= 1.0 && n <= 10.0))
+        return lens_wrong(r, 2, "give the index after the surface, 1 or 0 for air", "the index %g is out of range", n);
+    if (!(diameter >= 0.0) || V < 0.0)
+        return lens_wrong(r, diameter >= 0.0 ? 4 : 3, "give a diameter, not a negative number",
+                          "a number below 0 is out of range");
+    s->diameter = diameter;
+    s->medium = n > 1.0 ? lens_medium_of_numbers(n, V) : s->medium;
+    if (s->radius == 0.0 && n <= 1.0 && !*has_stop)
+        r->p->stop = (int)r->p->count - 1, *has_stop = true;
+    return STATUS_OK;
+}
+
+static status read_dat(lens_reader *r, char *text)
+{
+    bool has_stop = false;
+    while (text) {
+        char *line = strsep(&text, "\n");
+        r->line++;
+        line += strspn(line, " \t");
+        if (*line == '#') {
+            if (!r->p->title[0])
+                snprintf(r->p->title, sizeof r->p->title, "%.*s", 120, line + 1 + strspn(line + 1, "# \t"));
+            continue;
+        }
+        char *comment = strchr(line, '#');
+        if (comment)
+            *comment = 0;
+        lens_divide(r, line, false);
+        if (r->count > 1 || (r->count == 1 && r->p->count > 0)) /* a single number before the table is f */
+            TRY(read_dat_row(r, &has_stop));
+    }
+    return STATUS_OK;
+}
+
+/* --- .csv --- */
+
+typedef enum lens_column {
+    COLUMN_RADIUS,
+    COLUMN_THICKNESS,
+    COLUMN_MEDIUM,
+    COLUMN_DIAMETER,
+    COLUMN_CONIC,
+    COLUMN_STOP,
+    COLUMN_HOLE,
+    COLUMN_NAME,
+    COLUMN_EVEN
+} lens_column;
+static const char *const column_words[] = {"radius", "thickness", "medium", "diameter", "conic", "stop",
+                                           "hole",   "name",      "a4",     "a6",       "a8",    "a10",
+                                           "a12",    "a14",       "a16",    "a18",      "a20"};
+enum { COLUMN_COUNT = sizeof column_words / sizeof *column_words };
+
+static const char *const key_words[] = {"title",         "unit_mm",        "object_distance", "pupil",
+                                        "f_number",      "object_na",      "field_deg",       "field_height",
+                                        "wavelength_nm", "image_diameter", "image_radius"};
+enum { KEY_COUNT = sizeof key_words / sizeof *key_words };
+
+static int index_of(const char *word, const char *const *words, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (strcasecmp(word, words[i]) == 0)
+            return i;
+    return -1;
+}
+
+static status unknown(const lens_reader *r, int at, const char *what, const char *const *words, size_t count)
+{
+    char remedy[300];
+    suggest_key(r->word[at], words, count, remedy, sizeof remedy);
+    return lens_wrong(r, at, remedy, "unknown %s '%.40s'", what, r->word[at]);
+}
+
+static status read_positive(const lens_reader *r, const char *what, double *out)
+{
+    double value;
+    TRY(lens_number(r, 1, what, &value));
+    if (!(value > 0.0))
+        return lens_wrong(r, 1, "give a number above 0", "%s %g is out of range", what, value);
+    *out = value;
+    return STATUS_OK;
+}
+
+static status read_fields(const lens_reader *r, bool heights)
+{
+    lens_prescription *p = r->p;
+    if (r->count - 1 > LENS_LIST_MAX || r->count < 2)
+        return lens_wrong(r, 0, "give 1 to 24 fields", "%d fields", r->count - 1);
+    p->field_kind = heights ? LENS_FIELD_OBJECT : LENS_FIELD_ANGLE;
+    p->field_count = (size_t)(r->count - 1);
+    for (int i = 1; i < r->count; i++) {
+        double value;
+        TRY(lens_number(r, i, "a field", &value));
+        if (!heights && fabs(value) > 180.0)
+            return lens_wrong(r, i, "give degrees from the axis", "the field %g is out of range", value);
+        p->field[i - 1] = (lens_field){0.0, value, 1.0};
+    }
+    return STATUS_OK;
+}
+
+static status read_wavelengths(const lens_reader *r)
+{
+    lens_prescription *p = r->p;
+    if (r->count - 1 > LENS_LIST_MAX || r->count < 2)
+        return lens_wrong(r, 0, "give 1 to 24 wavelengths", "%d wavelengths", r->count - 1);
+    p->wavelength_count = (size_t)(r->count - 1);
+    for (int i = 1; i < r->count; i++) {
+        double nm;
+        TRY(lens_number(r, i, "a wavelength", &nm));
+        if (!(nm >= 200.0 && nm <= 2000.0))
+            return lens_wrong(r, i, "give nanometres, from 200 to 2000", "the wavelength %g is out of range", nm);
+        p->wavelength[i - 1] = (lens_wavelength){nm, 1.0};
+    }
+    return STATUS_OK;
+}
+
+static status read_aperture(const lens_reader *r, lens_aperture_kind kind)
+{
+    TRY(read_positive(r, r->word[0], &r->p->aperture));
+    r->p->aperture_kind = kind;
+    return STATUS_OK;
+}
+
+static status read_key(const lens_reader *r, int key)
+{
+    lens_prescription *p = r->p;
+    switch (key) {
+    case 0:
+        p->title[0] = 0;
+        for (int i = 1; i < r->count; i++) { /* a title may have commas */
+            const size_t used = strlen(p->title);
+            snprintf(p->title + used, sizeof p->title - used, "%s%s", i > 1 ? ", " : "", r->word[i]);
+        }
+        return STATUS_OK;
+    case 1: return read_positive(r, "unit_mm", &p->unit_mm);
+    case 2: return read_positive(r, "object_distance", &p->object_distance);
+    case 3: return read_aperture(r, LENS_APERTURE_PUPIL);
+    case 4: return read_aperture(r, LENS_APERTURE_NUMBER);
+    case 5: return read_aperture(r, LENS_APERTURE_OBJECT);
+    case 6: return read_fields(r, false);
+    case 7: return read_fields(r, true);
+    case 8: return read_wavelengths(r);
+    case 9: return read_positive(r, "image_diameter", &p->image_diameter);
+    default: return lens_number(r, 1, "image_radius", &p->image_radius);
+    }
+}
+
+static status read_header(const lens_reader *r, int at[COLUMN_COUNT])
+{
+    for (int c = 0; c < COLUMN_COUNT; c++)
+        at[c] = -1;
+    for (int i = 0; i < r->count; i++) {
+        const int c = index_of(r->word[i], column_words, COLUMN_COUNT);
+        if (c < 0)
+            return unknown(r, i, "column", column_words, COLUMN_COUNT);
+        at[c] = i;
+    }
+    return at[COLUMN_THICKNESS] < 0 ? lens_wrong(r, -1, "add the column thickness", "no column is named thickness")
+                                    : STATUS_OK;
+}
+
+static const char *cell(const lens_reader *r, const int at[COLUMN_COUNT], int column)
+{
+    return at[column] >= 0 && at[column] < r->count ? r->word[at[column]] : "";
+}
+
+/* A number, or 0 for an empty cell; `inf` is 0 too, for a flat surface. */
+static status cell_number(const lens_reader *r, const int at[COLUMN_COUNT], int column, double *out)
+{
+    const char *text = cell(r, at, column);
+    *out = 0.0;
+    if (!*text || (column == COLUMN_RADIUS && (strcasecmp(text, "inf") == 0 || strcasecmp(text, "infinity") == 0)))
+        return STATUS_OK;
+    return lens_number(r, at[column], column_words[column], out);
+}
+
+static status read_csv_row(lens_reader *r, const int at[COLUMN_COUNT])
+{
+    status code = STATUS_OK;
+    if (r->count > COLUMN_COUNT)
+        return lens_wrong(r, COLUMN_COUNT, "give as many cells as the header", "the line has %d cells", r->count);
+    lens_surface *s = lens_append(r, &code);
+    if (!s)
+        return code;
+    TRY(cell_number(r, at, COLUMN_RADIUS, &s->radius));
+    TRY(cell_number(r, at, COLUMN_THICKNESS, &s->thickness));
+    TRY(cell_number(r, at, COLUMN_DIAMETER, &s->diameter));
+    TRY(cell_number(r, at, COLUMN_CONIC, &s->conic));
+    TRY(cell_number(r, at, COLUMN_HOLE, &s->hole));
+    for (int i = 0; i < LENS_EVEN_TERMS; i++)
+        TRY(cell_number(r, at, COLUMN_EVEN + i, &s->even[i]));
+    if (s->diameter < 0.0 || s->hole < 0.0)
+        return lens_wrong(r, at[s->diameter < 0.0 ? COLUMN_DIAMETER : COLUMN_HOLE], "give 0 or more",
+                          "a diameter below 0 is out of range");
+    snprintf(s->name, sizeof s->name, "%.63s", cell(r, at, COLUMN_NAME));
+    const char *stop = cell(r, at, COLUMN_STOP), *word = cell(r, at, COLUMN_MEDIUM);
+    if (*stop && strcmp(stop, "0") != 0) {
+        if (r->p->stop >= 0)
+            return lens_wrong(r, at[COLUMN_STOP], "mark one surface", "a second surface is the stop");
+        r->p->stop = (int)r->p->count - 1;
+    }
+    s->mirror = strcasecmp(word, "mirror") == 0;
+    if (!s->mirror)
+        return lens_read_medium(r, at[COLUMN_MEDIUM], word, &s->medium);
+    s->medium = r->p->count > 1 ? s[-1].medium : r->p->object_medium;
+    return STATUS_OK;
+}
+
+static status read_csv(lens_reader *r, char *text)
+{
+    int at[COLUMN_COUNT];
+    bool has_header = false;
+    while (text) {
+        char *line = strsep(&text, "\n");
+        r->line++;
+        if (line[strspn(line, " \t")] == '#' || !line[strspn(line, " \t")])
+            continue;
+        lens_divide(r, line, true);
+        const int key = index_of(r->word[0], key_words, KEY_COUNT);
+        if (has_header)
+            TRY(read_csv_row(r, at));
+        else if (key >= 0)
+            TRY(read_key(r, key));
+        else if (index_of(r->word[0], column_words, COLUMN_COUNT) >= 0)
+            TRY((has_header = true, read_header(r, at)));
+        else
+            return unknown(r, 0, "key", key_words, KEY_COUNT);
+    }
+    return STATUS_OK;
+}
+
+/* --- any file --- */
+
+static const struct lens_format {
+    const char *ending;
+    status (*read)(lens_reader *r, char *text);
+} formats[] = {{".zmx", lens_read_zmx}, {".dat", read_dat}, {".csv", read_csv}};
+
+static const struct lens_format *format_of(const char *name)
+{
+    const size_t length = strlen(name);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (length > 4 && strcasecmp(name + length - 4, formats[i].ending) == 0)
+            return &formats[i];
+    return NULL;
+}
+
+bool lens_file_named(const char *path)
+{
+    return format_of(path) != NULL;
+}
+
+/* What no reader has checked: that the numbers are of a size with which one can compute. */
+static status check(const lens_reader *r)
+{
+    const lens_prescription *p = r->p;
+    const double most = 1e9;
+    if (p->count == 0)
+        return lens_wrong(r, -1, "give a line for each surface", "the file has no surfaces");
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        lens_reader at = *r;
+        at.line = s->line;
+        if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most)
+            return lens_wrong(&at, -1, "use numbers below 1e9", "a number of surface %zu is too large", i + 1);
+        if (s->mirror && s->medium.kind != LENS_AIR)
+            return lens_wrong(&at, -1, "give the mirror as the back of a solid in the scene file",
+                              "surface %zu is a mirror behind glass, which is not supported", i + 1);
+    }
+    return STATUS_OK;
+}
+
+status lens_file_parse(const char *name, const char *text, size_t size, const lens_glasses *glasses,
+                       lens_prescription *out, diagnostic *why)
+{
+    const struct lens_format *format = format_of(name);
+    *out = lens_prescription_empty();
+    if (!format)
+        return diagnose_at(why, name, STATUS_BAD_INPUT, "use a file that ends in .zmx, .dat or .csv",
+                           "the ending is not that of a lens file");
+    char *plain = text_narrow(text, size);
+    if (!plain)
+        return out_of_memory(why);
+    lens_reader r = {.name = name, .glasses = glasses, .p = out, .why = why};
+    status code = format->read(&r, plain);
+    r.line = 0;
+    THEN(code, check(&r));
+    free(plain);
+    if (code == STATUS_OK)
+        lens_prescription_complete(out);
+    else
+        lens_prescription_release(out);
+    return code;
+}
+
+status lens_file_read(const char *path, const lens_glasses *glasses, lens_prescription *out, diagnostic *why)
+{
+    char *text;
+    size_t size;
+    *out = lens_prescription_empty();
+    TRY(file_read_below(path, glasses ? glasses->root : NULL, LENS_BYTES_MAX, &text, &size, why));
+    const status code = lens_file_parse(path, text, size, glasses, out, why);
+    free(text);
+    return code;
+}

@@ -1,0 +1,125 @@
+/* Media of lens prescriptions: words to laws and back (lens_files.h). */
+#include "base/file.h"
+#include "base/number.h"
+#include "base/text.h"
+#include "scene/lens/lens_files.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { GLASS_BYTES_MAX = 1 << 26 };
+
+/* Cauchy's law n = A + B / L^2 with the given n_d, and B from V_d = (n_d - 1) / (n_F - n_C). */
+lens_medium lens_medium_of_numbers(double n_d, double V_d)
+{
+    const double um = 1e-3, d = LINE_HELIUM_D_NM * um, F = LINE_HYDROGEN_F_NM * um, C = LINE_HYDROGEN_C_NM * um;
+    lens_medium m = {.kind = V_d > 0.0 ? LENS_MODEL : LENS_CONSTANT, .n_d = n_d, .V_d = V_d, .glass_file = -1};
+    m.law.relative_to_air = true;
+    m.law.law = (dispersion){.kind = DISPERSION_CONSTANT, .count = 1, .coefficient = {n_d}};
+    if (V_d > 0.0) {
+        const double B = (n_d - 1.0) / V_d / (1.0 / (F * F) - 1.0 / (C * C));
+        m.law.law = (dispersion){.kind = DISPERSION_CAUCHY, .count = 2, .coefficient = {n_d - B / (d * d), B}};
+    }
+    return m;
+}
+
+static bool is_air(const char *word)
+{
+    return !*word || strcasecmp(word, "air") == 0;
+}
+
+static bool find_in_catalogue(const char *word, lens_medium *out)
+{
+    const char *usual = media_usual_name(word);
+    const medium *m = media_find(usual);
+    if (!m)
+        return false;
+    *out = (lens_medium){.kind = LENS_CATALOGUE, .glass_file = -1, .law = {.law = m->law}};
+    out->law.relative_to_air = m->relative_to_air;
+    out->n_d = lens_medium_index(out, LINE_HELIUM_D_NM);
+    const double V = dispersion_abbe_number(&m->law);
+    out->V_d = isfinite(V) ? V : 0.0;
+    return true;
+}
+
+/* A line "NM name formula code n_d V_d ..." of the file with that name. */
+static status find_in_file(const char *path, const char *root, const char *word, lens_medium *out, bool *found,
+                           diagnostic *why)
+{
+    char *text, name[LENS_NAME_MAX], n[32], V[32];
+    size_t size;
+    TRY(file_read_below(path, root, GLASS_BYTES_MAX, &text, &size, why));
+    char *plain = text_narrow(text, size), *rest = plain;
+    free(text);
+    if (!plain)
+        return out_of_memory(why);
+    double n_d, V_d;
+    for (char *line = strsep(&rest, "\n"); line && !*found; line = strsep(&rest, "\n"))
+        if (sscanf(line, "NM %63s %*s %*s %31s %31s", name, n, V) == 3 && strcasecmp(name, word) == 0 &&
+            number_parse_real(n, &n_d) && number_parse_real(V, &V_d) && n_d > 0.0) {
+            *out = lens_medium_of_numbers(n_d, fmax(V_d, 0.0));
+            out->kind = LENS_DATA;
+            snprintf(out->name, sizeof out->name, "%s", name);
+            *found = true;
+        }
+    free(plain);
+    return STATUS_OK;
+}
+
+/* n/V, a six-digit glass code (517642: n_d 1.517, V_d 64.2; MIL-G-174), or n. */
+static bool find_numbers(const char *word, lens_medium *out)
+{
+    const char *at = word;
+    double n, V = 0.0;
+    if (!number_scan(&at, &n))
+        return false;
+    if ((*at == '/' || *at == ':') && (at++, !number_scan(&at, &V)))
+        return false;
+    if (*at)
+        return false;
+    if (strlen(word) == 6 && strspn(word, "0123456789") == 6) {
+        V = fmod(n, 1000.0) / 10.0;
+        n = 1.0 + floor(n / 1000.0) / 1000.0;
+    }
+    if (!(n >= 0.1 && n <= 10.0 && V >= 0.0))
+        return false;
+    *out = lens_medium_of_numbers(n, V);
+    if (n == 1.0)
+        *out = (lens_medium){.kind = LENS_AIR, .glass_file = -1};
+    return true;
+}
+
+status lens_medium_parse(const char *word, const lens_glasses *glasses, lens_medium *out, diagnostic *why)
+{
+    *out = (lens_medium){.kind = LENS_AIR, .glass_file = -1};
+    if (is_air(word))
+        return STATUS_OK;
+    bool found = find_in_catalogue(word, out) || find_numbers(word, out);
+    for (size_t i = 0; glasses && i < glasses->count && !found; i++) {
+        TRY(find_in_file(glasses->file[i], glasses->root, word, out, &found, why));
+        out->glass_file = (int)i;
+    }
+    if (!found)
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "write n_d/V_d, such as 1.62041/60.3, or give the maker's catalogue: glasses FILE.agf",
+                        "the glass '%.60s' is neither in the catalogue nor in a file of glasses", word);
+    if (!out->name[0] && (out->kind == LENS_CATALOGUE || out->kind == LENS_DATA))
+        snprintf(out->name, sizeof out->name, "%s", media_usual_name(word));
+    return STATUS_OK;
+}
+
+char *lens_medium_text(const lens_medium *m, char *text)
+{
+    char n[NUMBER_TEXT_MAX], V[NUMBER_TEXT_MAX];
+    switch (m->kind) {
+    case LENS_AIR: snprintf(text, LENS_NAME_MAX, "air"); break;
+    case LENS_CATALOGUE:
+    case LENS_DATA: snprintf(text, LENS_NAME_MAX, "%.*s", LENS_NAME_MAX - 1, m->name); break;
+    case LENS_MODEL: snprintf(text, LENS_NAME_MAX, "%s/%s", number_format(m->n_d, n), number_format(m->V_d, V)); break;
+    case LENS_CONSTANT: snprintf(text, LENS_NAME_MAX, "%s", number_format(m->n_d, n)); break;
+    }
+    return text;
+}

@@ -1,0 +1,230 @@
+/* A complete scene about a lens system: camera, object, light and beams (lens_solids.h). */
+#include "base/number.h"
+#include "scene/lens/lens_put.h"
+#include "scene/lens/lens_solids.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/objects.h"
+#include "scene/model/scene.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- parameters by name (lens_put.h) --- */
+
+void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
+{
+    char path[2 * SCENE_NAME_MAX + 2], value[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    snprintf(path, sizeof path, "%s.%s", name, row);
+    THEN(t->code, scene_set_property(t->s, path, value, t->why));
+}
+
+void lens_put_number(lens_target *t, const char *name, const char *row, double value)
+{
+    char text[NUMBER_TEXT_MAX];
+    lens_put(t, name, row, "%s", number_format(value, text));
+}
+
+bool lens_has(const scene *s, param_group group, const char *name)
+{
+    return object_find(s, group, name) >= 0;
+}
+
+/* --- the scene --- */
+
+static double rounded(double x, int digits)
+{
+    char text[NUMBER_TEXT_MAX];
+    double value = x;
+    number_parse_real(number_format_digits(x, digits, text), &value);
+    return value;
+}
+
+/* What the setup is built from; light travels along +z. */
+typedef struct setup {
+    lens_target t;
+    const lens_prescription *p;
+    lens_first_order f;
+    double length;   /* from the first vertex to the image */
+    double distance; /* of the object */
+    double object;   /* half height of the object */
+    double image;    /* half height of the image */
+    double cone;     /* radius of the camera's aperture */
+} setup;
+
+static void set_render(setup *u)
+{
+    lens_target *t = &u->t;
+    size_t catalogue = 0;
+    for (size_t i = 0; i < u->p->count; i++)
+        catalogue += u->p->surface[i].medium.kind == LENS_CATALOGUE || u->p->surface[i].medium.kind == LENS_DATA;
+    lens_put(t, "render", "width", "360");
+    lens_put(t, "render", "height", "240");
+    lens_put(t, "render", "samples", "36");
+    lens_put(t, "render", "depth", "%d", (int)fmin(64.0, 8.0 + 2.0 * (double)u->p->count));
+    /* without ghosts, whose rays would outnumber the others; weights are those of a pixel's 36 rays */
+    lens_put(t, "render", "min_weight", "0.0027");
+    lens_put_number(t, "render", "unit_m", 0.001 * u->p->unit_mm);
+    lens_put_number(t, "render", "lambda_nm", u->p->wavelength[u->p->primary].nm);
+    lens_put(t, "background", "color", "0.02,0.03,0.05");
+    if (catalogue > 0) /* their indices are relative to air */
+        lens_put(t, "background", "medium", "air");
+}
+
+/* Behind the image, in focus on it, with an aperture through which the rays of each of its points go on to all of the
+ * exit pupil. The image is upside down, and so is the camera. */
+static void set_camera(setup *u)
+{
+    lens_target *t = &u->t;
+    const lens_prescription *p = u->p;
+    double vertex = 0.0;
+    for (size_t i = 0; i + 1 < p->count; i++)
+        vertex += p->surface[i].thickness;
+    const double pupil = fabs(u->length - vertex - u->f.exit_pupil), /* from the exit pupil to the image */
+        behind = 4.0 * fmin(pupil, 20.0 * fabs(u->f.efl)), side = u->f.direction,
+                 radius = 0.5 * u->f.pupil_diameter * pupil / fmax(fabs(u->f.efl), 1e-9),
+                 cone = radius / pupil * behind + u->image * (1.0 + behind / pupil);
+    u->cone = cone;
+    lens_put(t, "camera", "position", "0,0,%.12g", u->length + side * behind);
+    lens_put(t, "camera", "target", "0,0,%.12g", u->length);
+    lens_put(t, "camera", "roll_deg", "180");
+    lens_put_number(t, "camera", "focus", rounded(behind, 12));
+    lens_put_number(t, "camera", "fov_deg", rounded(2.0 * 57.295779513 * atan(0.55 * u->image / behind), 4));
+    lens_put_number(t, "camera", "aperture", rounded(2.0 * cone, 4));
+    /* the fraction of the camera's rays that reach the pupil */
+    lens_put_number(t, "camera", "exposure", rounded(2.0 * log2(cone * pupil / (radius * behind)), 3));
+}
+
+/* A chequered wall at the distance of the object, and small lamps before and behind it. */
+static void add_object(setup *u)
+{
+    lens_target *t = &u->t;
+    const double d = u->distance, wide = u->object;
+    THEN(t->code, scene_add(t->s, PARAM_MATERIAL, "wall-paint", NULL, t->why));
+    lens_put(t, "wall-paint", "color", "0.75,0.72,0.65");
+    lens_put(t, "wall-paint", "ambient", "1");
+    lens_put_number(t, "wall-paint", "checker", rounded(wide / 4.0, 3));
+    lens_put(t, "wall-paint", "checker_color", "0.1,0.2,0.4");
+    THEN(t->code, scene_add_solid(t->s, "wall", SHAPE_BOX, NULL, t->why));
+    lens_put(t, "wall", "material", "wall-paint");
+    lens_put(t, "wall", "position", "0,0,%.6g", -d * 1.005);
+    lens_put(t, "wall", "size", "%.6g,%.6g,%.6g", 4.0 * wide, 2.2 * wide, 0.01 * d);
+    THEN(t->code, scene_add(t->s, PARAM_MATERIAL, "lamp-glow", NULL, t->why));
+    lens_put(t, "lamp-glow", "emission", "8");
+    for (int i = 0; i < 5; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "lamp-%d", i + 1);
+        const double at = 0.25 * d, across = 0.32 * wide * at / d * (i - 2);
+        THEN(t->code, scene_add_solid(t->s, name, SHAPE_SPHERE, NULL, t->why));
+        lens_put(t, name, "material", "lamp-glow");
+        lens_put(t, name, "position", "%.6g,%.6g,%.6g", across, 0.25 * across, -at);
+        lens_put_number(t, name, "radius", rounded(0.015 * wide * at / d, 3));
+    }
+}
+
+/* A board around the tube, so that the camera sees nothing past the lens. */
+static void add_board(setup *u)
+{
+    lens_target *t = &u->t;
+    const int tube = scene_find_solid(t->s, "objective-tube");
+    if (tube < 0)
+        return;
+    const solid_shape of = t->s->solids[tube].shape;
+    THEN(t->code, scene_add_solid(t->s, "board", SHAPE_CUP, NULL, t->why));
+    lens_put(t, "board", "material", "blackened");
+    lens_put(t, "board", "position", "0,0,%.9g", of.position.z + 0.45 * of.height);
+    lens_put(t, "board", "rotation", "90,0,0");
+    lens_put_number(t, "board", "floor", 0.0);
+    lens_put_number(t, "board", "height", rounded(0.1 * of.height, 4));
+    lens_put_number(t, "board", "inner_radius", rounded(0.5 * (of.radius + of.inner_radius), 6));
+    lens_put_number(t, "board", "radius", rounded(4.0 * (u->cone + u->image + of.radius), 4));
+    lens_put(t, "board", "priority", "-1");
+}
+
+static void add_field_beam(setup *u, const char *name, size_t i)
+{
+    lens_target *t = &u->t;
+    const lens_prescription *p = u->p;
+    const double rad = 0.017453292519943295769, pupil = u->f.pupil,
+                 start = -fmax(0.5 * fabs(u->f.efl), pupil < 0.0 ? -1.2 * pupil : 0.0);
+    const bool angles = p->field_kind == LENS_FIELD_ANGLE;
+    const double reach = p->object_distance + pupil,
+                 slope_x = angles ? tan(p->field[i].x * rad) : -p->field[i].x / reach,
+                 slope_y = angles ? tan(p->field[i].y * rad) : -p->field[i].y / reach;
+    /* towards the centre of the entrance pupil; +x and +y of the prescription are -x and +y here */
+    lens_put(t, name, "kind", "bundle");
+    lens_put(t, name, "direction", "%.17g,%.17g,1", slope_x, slope_y);
+    lens_put(t, name, "position", "%.17g,%.17g,%.17g", slope_x * (start - pupil), slope_y * (start - pupil), start);
+    lens_put_number(t, name, "width", u->f.pupil_diameter);
+    lens_put(t, name, "rays", "61");
+    lens_put(t, name, "branches", "off");
+    lens_put(t, name, "depth", "64");
+    lens_put_number(t, name, "lambda_nm", p->wavelength[p->primary].nm);
+    lens_put(t, name, "visible", "off");
+}
+
+static void add_beams(setup *u)
+{
+    char name[32];
+    for (size_t i = 0; i < u->p->field_count; i++) {
+        snprintf(name, sizeof name, "objective-field-%zu", i + 1);
+        THEN(u->t.code, scene_add(u->t.s, PARAM_BEAM, name, NULL, u->t.why));
+        add_field_beam(u, name, i);
+    }
+}
+
+static setup measured(scene *s, const lens_prescription *p, lens_prescription *focused, diagnostic *why)
+{
+    setup u = {.t = {s, STATUS_OK, why}, .p = focused};
+    const lens_first_order far = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    *focused = *p;
+    if (!isfinite(focused->object_distance))
+        focused->object_distance = rounded(fmin(1e5, 50.0 * fabs(far.efl)), 3);
+    u.distance = focused->object_distance;
+    u.f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const double slope = u.f.field_slope > 0.0 ? fmin(u.f.field_slope, 2.0) : 0.2;
+    u.object = slope * (u.distance + u.f.pupil);
+    const lens_first_order near = lens_first_order_of(focused, p->wavelength[p->primary].nm);
+    u.image = fabs(near.magnification) * u.object;
+    for (size_t i = 0; i + 1 < p->count; i++)
+        u.length += p->surface[i].thickness;
+    u.length += near.image;
+    return u;
+}
+
+status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses, scene **out, diagnostic *why)
+{
+    lens_prescription focused;
+    *out = scene_create();
+    if (!*out)
+        return out_of_memory(why);
+    setup u = measured(*out, p, &focused, why);
+    if (!isfinite(u.length) || !(u.image > 0.0) || !(u.f.pupil_diameter > 0.0))
+        u.t.code = diagnose(why, STATUS_BAD_INPUT,
+                            "give the aperture (pupil, f_number or the diameter of the stop) of a system with an image",
+                            "the system has no image, or no aperture");
+    THEN(u.t.code, scene_set_title(*out, p->title[0] ? p->title : "A lens", why));
+    const lens_placement at = {.name = "objective",
+                               .rotation_deg = {90.0, 0.0, 0.0},
+                               .scale = 1.0,
+                               .mount = true,
+                               .screen = true,
+                               .glasses = glasses};
+    set_render(&u);
+    set_camera(&u);
+    add_object(&u);
+    add_beams(&u);
+    THEN(u.t.code, lens_add_to_scene(*out, p, &at, why));
+    add_board(&u);
+    lens_put(&u.t, "objective-screen", "visible", "off"); /* the camera is behind it */
+    if (u.t.code != STATUS_OK) {
+        scene_destroy(*out);
+        *out = NULL;
+    }
+    return u.t.code;
+}

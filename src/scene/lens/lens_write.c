@@ -1,0 +1,235 @@
+/* Writes lens files (lens_files.h). */
+#include "base/number.h"
+#include "scene/lens/lens_files.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+static void put_number(FILE *out, const char *before, double value)
+{
+    char text[NUMBER_TEXT_MAX];
+    fprintf(out, "%s%s", before, number_format(value, text));
+}
+
+/* A text without the characters that divide lines or cells. */
+static void put_text(FILE *out, const char *text, bool commas)
+{
+    for (; *text; text++)
+        fputc(iscntrl((unsigned char)*text) || (*text == ',' && !commas) ? ' ' : *text, out);
+}
+
+/* --- .csv --- */
+
+static void put_system(const lens_prescription *p, FILE *out)
+{
+    static const char *const apertures[] = {
+        [LENS_APERTURE_PUPIL] = "pupil", [LENS_APERTURE_NUMBER] = "f_number", [LENS_APERTURE_OBJECT] = "object_na"};
+    if (p->title[0]) {
+        fputs("title,", out);
+        put_text(out, p->title, true);
+        fputc('\n', out);
+    }
+    put_number(out, "unit_mm,", p->unit_mm);
+    if (isfinite(p->object_distance))
+        put_number(out, "\nobject_distance,", p->object_distance);
+    if (p->aperture_kind != LENS_APERTURE_STOP) {
+        fprintf(out, "\n%s", apertures[p->aperture_kind]);
+        put_number(out, ",", p->aperture);
+    }
+    fprintf(out, "\n%s", p->field_kind == LENS_FIELD_ANGLE ? "field_deg" : "field_height");
+    for (size_t i = 0; i < p->field_count; i++)
+        put_number(out, ",", p->field[i].x == 0.0 ? p->field[i].y : hypot(p->field[i].x, p->field[i].y));
+    fputs("\nwavelength_nm", out);
+    put_number(out, ",", p->wavelength[p->primary].nm);
+    for (size_t i = 0; i < p->wavelength_count; i++)
+        if (i != p->primary)
+            put_number(out, ",", p->wavelength[i].nm);
+    if (p->image_radius != 0.0)
+        put_number(out, "\nimage_radius,", p->image_radius);
+    if (p->image_diameter > 0.0)
+        put_number(out, "\nimage_diameter,", p->image_diameter);
+    fputc('\n', out);
+}
+
+/* The number of coefficients that some surface has. */
+static int terms_of(const lens_prescription *p)
+{
+    int terms = 0;
+    for (size_t i = 0; i < p->count; i++)
+        for (int k = terms; k < LENS_EVEN_TERMS; k++)
+            if (p->surface[i].even[k] != 0.0)
+                terms = k + 1;
+    return terms;
+}
+
+static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
+{
+    char word[LENS_NAME_MAX];
+    const int terms = terms_of(p);
+    (void)why;
+    put_system(p, out);
+    fputs("radius,thickness,medium,diameter,conic,stop,hole", out);
+    for (int k = 0; k < terms; k++)
+        fprintf(out, ",a%d", 4 + 2 * k);
+    fputs(",name\n", out);
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        put_number(out, "", s->radius);
+        put_number(out, ",", s->thickness);
+        fprintf(out, ",%s", s->mirror ? "mirror" : lens_medium_text(&s->medium, word));
+        put_number(out, ",", s->diameter);
+        put_number(out, ",", s->conic);
+        fprintf(out, ",%d", p->stop == (int)i);
+        put_number(out, ",", s->hole);
+        for (int k = 0; k < terms; k++)
+            put_number(out, ",", s->even[k]);
+        fputc(',', out);
+        put_text(out, s->name, false);
+        fputc('\n', out);
+    }
+    return STATUS_OK;
+}
+
+/* --- .dat --- */
+
+static status write_dat(const lens_prescription *p, FILE *out, diagnostic *why)
+{
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        bool plain = !s->mirror && s->conic == 0.0;
+        for (int k = 0; k < LENS_EVEN_TERMS; k++)
+            plain &= s->even[k] == 0.0;
+        if (!plain)
+            return diagnose(why, STATUS_BAD_INPUT, "write a .zmx or .csv file",
+                            "surface %zu is a mirror or not a sphere, which a .dat file cannot hold", i + 1);
+    }
+    fputs("# ", out);
+    put_text(out, p->title, true);
+    fputs("\n# radius thickness index diameter, V\n", out);
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        const bool air = s->medium.kind == LENS_AIR;
+        put_number(out, "", s->radius);
+        put_number(out, " ", s->thickness);
+        put_number(out, " ", air ? ((int)i == p->stop ? 0.0 : 1.0) : s->medium.n_d);
+        put_number(out, " ", s->diameter);
+        if (!air && s->medium.V_d > 0.0)
+            put_number(out, " ", s->medium.V_d);
+        fputc('\n', out);
+    }
+    return STATUS_OK;
+}
+
+/* --- .zmx --- */
+
+static void put_zmx_glass(const lens_surface *s, FILE *out)
+{
+    const lens_medium *m = &s->medium;
+    if (s->mirror)
+        fputs("  GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0\n", out);
+    if (s->mirror || m->kind == LENS_AIR)
+        return;
+    const bool named = m->kind == LENS_CATALOGUE || m->kind == LENS_DATA;
+    fputs("  GLAS ", out);
+    for (const char *c = named ? m->name : "___BLANK"; *c; c++)
+        fputc(toupper((unsigned char)*c), out);
+    fputs(named ? " 0 0" : " 1 0", out);
+    put_number(out, " ", m->n_d);
+    put_number(out, " ", m->V_d);
+    fputs(" 0 0 0 0 0 0\n", out);
+}
+
+static void put_zmx_surface(size_t number, const lens_surface *s, bool stop, FILE *out)
+{
+    bool even = false;
+    for (int k = 0; k < LENS_EVEN_TERMS; k++)
+        even |= s->even[k] != 0.0;
+    fprintf(out, "SURF %zu\n", number);
+    if (stop)
+        fputs("  STOP\n", out);
+    fprintf(out, "  TYPE %s\n", even ? "EVENASPH" : "STANDARD");
+    if (s->name[0]) {
+        fputs("  COMM ", out);
+        put_text(out, s->name, true);
+        fputc('\n', out);
+    }
+    char text[64];
+    snprintf(text, sizeof text, "%.17g", s->radius == 0.0 ? 0.0 : 1.0 / s->radius);
+    fprintf(out, "  CURV %s 0 0 0 0 \"\"\n", text);
+    for (int k = 0; k < LENS_EVEN_TERMS; k++)
+        if (s->even[k] != 0.0) {
+            fprintf(out, "  PARM %d", k + 2);
+            put_number(out, " ", s->even[k]);
+            fputc('\n', out);
+        }
+    if (isinf(s->thickness))
+        fputs("  DISZ INFINITY\n", out);
+    else
+        put_number(out, "  DISZ ", s->thickness), fputc('\n', out);
+    put_zmx_glass(s, out);
+    if (s->conic != 0.0)
+        put_number(out, "  CONI ", s->conic), fputc('\n', out);
+    put_number(out, "  DIAM ", 0.5 * s->diameter);
+    fputs(" 1 0 0 1 \"\"\n", out);
+    if (s->hole > 0.0) {
+        put_number(out, "  CLAP 0 ", 0.5 * s->hole);
+        put_number(out, " ", 0.5 * s->diameter);
+        fputc('\n', out);
+    }
+}
+
+static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
+{
+    static const struct {
+        const char *word;
+        double mm;
+    } units[] = {{"MM", 1.0}, {"CM", 10.0}, {"IN", 25.4}, {"METER", 1000.0}};
+    static const char *const apertures[] = {
+        [LENS_APERTURE_PUPIL] = "ENPD ", [LENS_APERTURE_NUMBER] = "FNUM ", [LENS_APERTURE_OBJECT] = "OBNA "};
+    const char *unit = NULL;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        unit = fabs(units[i].mm - p->unit_mm) <= 1e-12 * p->unit_mm ? units[i].word : unit;
+    if (!unit)
+        return diagnose(why, STATUS_BAD_INPUT, "set render.unit_m to 0.001, 0.01, 0.0254 or 1, or write a .csv file",
+                        "a .zmx file has no unit of %g mm", p->unit_mm);
+    fputs("VERS 181005 0 0\nMODE SEQ\nNAME ", out);
+    put_text(out, p->title, true);
+    fprintf(out, "\nUNIT %s X W X CM MR CPMM\n", unit);
+    if (p->aperture_kind == LENS_APERTURE_STOP)
+        fputs("FLOA\n", out);
+    else
+        put_number(out, apertures[p->aperture_kind], p->aperture), fputs(" 0\n", out);
+    fprintf(out, "FTYP %d 0 %zu %zu 0 0 0\nXFLN", p->field_kind == LENS_FIELD_OBJECT, p->field_count,
+            p->wavelength_count);
+    for (size_t i = 0; i < p->field_count; i++)
+        put_number(out, " ", p->field[i].x);
+    fputs("\nYFLN", out);
+    for (size_t i = 0; i < p->field_count; i++)
+        put_number(out, " ", p->field[i].y);
+    for (size_t i = 0; i < p->wavelength_count; i++) {
+        fprintf(out, "\nWAVM %zu", i + 1);
+        put_number(out, " ", p->wavelength[i].nm / 1000.0);
+        put_number(out, " ", p->wavelength[i].weight);
+    }
+    fprintf(out, "\nPWAV %zu\n", p->primary + 1);
+    const lens_surface object = {.thickness = p->object_distance, .medium = {.kind = LENS_AIR}},
+                       plane = {.radius = p->image_radius, .diameter = p->image_diameter, .medium = {.kind = LENS_AIR}};
+    put_zmx_surface(0, &object, false, out);
+    for (size_t i = 0; i < p->count; i++)
+        put_zmx_surface(i + 1, &p->surface[i], (int)i == p->stop, out);
+    put_zmx_surface(p->count + 1, &plane, false, out);
+    return STATUS_OK;
+}
+
+status lens_file_write(const lens_prescription *p, const char *path, FILE *out, diagnostic *why)
+{
+    const size_t length = strlen(path);
+    const char *ending = length > 4 ? path + length - 4 : "";
+    if (strcasecmp(ending, ".zmx") == 0)
+        return write_zmx(p, out, why);
+    if (strcasecmp(ending, ".dat") == 0)
+        return write_dat(p, out, why);
+    return write_csv(p, out, why);
+}
