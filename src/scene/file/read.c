@@ -10,6 +10,7 @@
  *   materials: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   beams: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   lens_systems: {NAME: {file: PATH, ...}, ...}            lenses as solids (read_lens.c)
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
  * A medium may also be a map of data, {file: PATH, ...}. An image sets the background's kind to image. Switches are
@@ -18,6 +19,7 @@
  * lists: [0, 1, 2]. The file's order is kept. Sections and objects may be empty. scene_read (shared_read.c) opens the
  * file. */
 #include "scene/file/document.h"
+#include "scene/file/read_lens.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
@@ -31,6 +33,7 @@
 
 typedef struct scene_reader {
     const document *file;
+    const lens_access *access;
     struct scene *scene;
     diagnostic *why;
 } scene_reader;
@@ -202,6 +205,20 @@ static status read_material_name(const scene_reader *r, const node *key, const n
     return read_located(r, word, scene_assign_material(r->scene, key->text, word->text, r->why));
 }
 
+/* The solid that it follows is read first, because it decides which parameters the solid has. */
+static status read_leader(const scene_reader *r, const node *key, const node *map, size_t index)
+{
+    const node *follows = node_get(map, "follows"), *own = node_get(map, "position");
+    own = own ? own : node_get(map, "rotation");
+    if (!follows)
+        return STATUS_OK;
+    if (own)
+        return node_error(r->file, own, r->why, "keep either follows and offset, or position and rotation",
+                          "%.80s follows another solid, but has its own place", key->text);
+    const param_place at = {param_find(PARAM_SOLID, "follows"), PARAM_SOLID, index, -1};
+    return read_value(r, key->text, &at, follows);
+}
+
 /* Adds a solid; its shape and material are not rows of the table. */
 static status begin_solid(const scene_reader *r, const node *key, const node *map, size_t *index)
 {
@@ -210,6 +227,7 @@ static status begin_solid(const scene_reader *r, const node *key, const node *ma
     TRY(read_one_medium(r, map));
     TRY(read_shape(r, key, map, &shape));
     TRY(read_located(r, key, scene_add_solid(r->scene, key->text, shape, index, r->why)));
+    TRY(read_leader(r, key, map, *index));
     return read_material_name(r, key, map);
 }
 
@@ -321,6 +339,12 @@ static status read_title(const scene_reader *r, const char *name, param_group gr
     return scene_set_title(r->scene, value->text, r->why);
 }
 
+static status read_lenses(const scene_reader *r, const char *name, param_group group, const node *map)
+{
+    (void)name, (void)group;
+    return is_empty(map) ? STATUS_OK : read_lens_systems(r->file, r->access, r->scene, map, r->why);
+}
+
 static status read_sections(const scene_reader *r)
 {
     /* In this order, not the file's: solids refer to materials, and are checked with render.weights. */
@@ -329,12 +353,12 @@ static status read_sections(const scene_reader *r)
         status (*read)(const scene_reader *, const char *, param_group, const node *);
         param_group group;
     } sections[] = {
-        {"title", read_title, PARAM_GROUP_COUNT}, {"render", read_settings, PARAM_RENDER},
-        {"camera", read_camera, PARAM_CAMERA},    {"background", read_settings, PARAM_BACKGROUND},
-        {"meshes", read_objects, PARAM_MESH},     {"textures", read_objects, PARAM_TEXTURE},
-        {"data", read_objects, PARAM_DATA},       {"materials", read_objects, PARAM_MATERIAL},
-        {"lights", read_objects, PARAM_LIGHT},    {"beams", read_objects, PARAM_BEAM},
-        {"solids", read_objects, PARAM_SOLID},
+        {"title", read_title, PARAM_GROUP_COUNT},   {"render", read_settings, PARAM_RENDER},
+        {"camera", read_camera, PARAM_CAMERA},      {"background", read_settings, PARAM_BACKGROUND},
+        {"meshes", read_objects, PARAM_MESH},       {"textures", read_objects, PARAM_TEXTURE},
+        {"data", read_objects, PARAM_DATA},         {"materials", read_objects, PARAM_MATERIAL},
+        {"lights", read_objects, PARAM_LIGHT},      {"beams", read_objects, PARAM_BEAM},
+        {"lens_systems", read_lenses, PARAM_SOLID}, {"solids", read_objects, PARAM_SOLID},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);
@@ -356,7 +380,7 @@ static status read_sections(const scene_reader *r)
     return code;
 }
 
-static status build(const document *file, scene **out, diagnostic *why)
+static status build(const document *file, const lens_access *access, scene **out, diagnostic *why)
 {
     scene *s = scene_create();
     char *path = strdup(document_name(file));
@@ -367,7 +391,7 @@ static status build(const document *file, scene **out, diagnostic *why)
     }
     free(s->path);
     s->path = path;
-    scene_reader r = {.file = file, .scene = s, .why = why};
+    scene_reader r = {.file = file, .access = access, .scene = s, .why = why};
     status code = read_sections(&r);
     THEN(code, read_located(&r, document_root(file), scene_check(s, why)));
     if (code != STATUS_OK) {
@@ -378,19 +402,25 @@ static status build(const document *file, scene **out, diagnostic *why)
     return STATUS_OK;
 }
 
-static status build_and_release(document *file, scene **out, diagnostic *why)
+static status build_and_release(document *file, const lens_access *access, scene **out, diagnostic *why)
 {
-    status code = build(file, out, why);
+    status code = build(file, access, out, why);
     document_destroy(file);
     return code;
 }
 
-status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)
+status read_scene_text(const char *name, const char *text, size_t size, const lens_access *access, scene **out,
+                       diagnostic *why)
 {
     *out = NULL;
     document *file;
     TRY(document_parse(name, text, size, &file, why));
-    return build_and_release(file, out, why);
+    return build_and_release(file, access, out, why);
+}
+
+status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why)
+{
+    return read_scene_text(name, text, size, &(lens_access){.allowed = false}, out, why);
 }
 
 static const char initial_scene[] =

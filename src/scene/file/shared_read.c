@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/text.h"
+#include "scene/file/read_lens.h"
 #include "scene/file/shared.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
@@ -131,8 +132,9 @@ static status read_file(const char *path, const char *root, scene **out, diagnos
             installed_suggest(path, "experiments/scenes", ".yaml", why);
         return read;
     }
-    const status code = shared_is_file(text, size) ? shared_read_file(path, text, size, out, why)
-                                                   : scene_read_text(path, text, size, out, why);
+    const status code = shared_is_file(text, size)
+                            ? shared_read_file(path, text, size, out, why)
+                            : read_scene_text(path, text, size, &(lens_access){true, root}, out, why);
     free(text);
     return code;
 }

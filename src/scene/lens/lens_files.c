@@ -165,15 +165,13 @@ typedef enum lens_column {
     COLUMN_NAME,
     COLUMN_EVEN
 } lens_column;
-static const char *const column_words[] = {"radius", "thickness", "medium", "diameter", "conic", "stop",
-                                           "hole",   "name",      "a4",     "a6",       "a8",    "a10",
-                                           "a12",    "a14",       "a16",    "a18",      "a20"};
-enum { COLUMN_COUNT = sizeof column_words / sizeof *column_words };
+const char *const lens_column_words[LENS_COLUMNS] = {"radius", "thickness", "medium", "diameter", "conic", "stop",
+                                                     "hole",   "name",      "a4",     "a6",       "a8",    "a10",
+                                                     "a12",    "a14",       "a16",    "a18",      "a20"};
 
-static const char *const key_words[] = {"title",         "unit_mm",        "object_distance", "pupil",
-                                        "f_number",      "object_na",      "field_deg",       "field_height",
-                                        "wavelength_nm", "image_diameter", "image_radius"};
-enum { KEY_COUNT = sizeof key_words / sizeof *key_words };
+const char *const lens_key_words[LENS_KEYS] = {"title",         "unit_mm",        "object_distance", "pupil",
+                                               "f_number",      "object_na",      "field_deg",       "field_height",
+                                               "wavelength_nm", "image_diameter", "image_radius"};
 
 static int index_of(const char *word, const char *const *words, int count)
 {
@@ -264,40 +262,40 @@ static status read_key(const lens_reader *r, int key)
     }
 }
 
-static status read_header(const lens_reader *r, int at[COLUMN_COUNT])
+static status read_header(const lens_reader *r, int at[LENS_COLUMNS])
 {
-    for (int c = 0; c < COLUMN_COUNT; c++)
+    for (int c = 0; c < LENS_COLUMNS; c++)
         at[c] = -1;
     for (int i = 0; i < r->count; i++) {
-        const int c = index_of(r->word[i], column_words, COLUMN_COUNT);
+        const int c = index_of(r->word[i], lens_column_words, LENS_COLUMNS);
         if (c < 0)
-            return unknown(r, i, "column", column_words, COLUMN_COUNT);
+            return unknown(r, i, "column", lens_column_words, LENS_COLUMNS);
         at[c] = i;
     }
     return at[COLUMN_THICKNESS] < 0 ? lens_wrong(r, -1, "add the column thickness", "no column is named thickness")
                                     : STATUS_OK;
 }
 
-static const char *cell(const lens_reader *r, const int at[COLUMN_COUNT], int column)
+static const char *cell(const lens_reader *r, const int at[LENS_COLUMNS], int column)
 {
     return at[column] >= 0 && at[column] < r->count ? r->word[at[column]] : "";
 }
 
 /* A number, or 0 for an empty cell; `inf` is 0 too, for a flat surface. */
-static status cell_number(const lens_reader *r, const int at[COLUMN_COUNT], int column, double *out)
+static status cell_number(const lens_reader *r, const int at[LENS_COLUMNS], int column, double *out)
 {
     const char *text = cell(r, at, column);
     *out = 0.0;
     if (!*text || (column == COLUMN_RADIUS && (strcasecmp(text, "inf") == 0 || strcasecmp(text, "infinity") == 0)))
         return STATUS_OK;
-    return lens_number(r, at[column], column_words[column], out);
+    return lens_number(r, at[column], lens_column_words[column], out);
 }
 
-static status read_csv_row(lens_reader *r, const int at[COLUMN_COUNT])
+static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS])
 {
     status code = STATUS_OK;
-    if (r->count > COLUMN_COUNT)
-        return lens_wrong(r, COLUMN_COUNT, "give as many cells as the header", "the line has %d cells", r->count);
+    if (r->count > LENS_COLUMNS)
+        return lens_wrong(r, LENS_COLUMNS, "give as many cells as the header", "the line has %d cells", r->count);
     lens_surface *s = lens_append(r, &code);
     if (!s)
         return code;
@@ -327,7 +325,7 @@ static status read_csv_row(lens_reader *r, const int at[COLUMN_COUNT])
 
 static status read_csv(lens_reader *r, char *text)
 {
-    int at[COLUMN_COUNT];
+    int at[LENS_COLUMNS];
     bool has_header = false;
     while (text) {
         char *line = strsep(&text, "\n");
@@ -335,15 +333,15 @@ static status read_csv(lens_reader *r, char *text)
         if (line[strspn(line, " \t")] == '#' || !line[strspn(line, " \t")])
             continue;
         lens_divide(r, line, true);
-        const int key = index_of(r->word[0], key_words, KEY_COUNT);
+        const int key = index_of(r->word[0], lens_key_words, LENS_KEYS);
         if (has_header)
             TRY(read_csv_row(r, at));
         else if (key >= 0)
             TRY(read_key(r, key));
-        else if (index_of(r->word[0], column_words, COLUMN_COUNT) >= 0)
+        else if (index_of(r->word[0], lens_column_words, LENS_COLUMNS) >= 0)
             TRY((has_header = true, read_header(r, at)));
         else
-            return unknown(r, 0, "key", key_words, KEY_COUNT);
+            return unknown(r, 0, "key", lens_key_words, LENS_KEYS);
     }
     return STATUS_OK;
 }

@@ -15,6 +15,10 @@ typedef struct lens_glasses {
     const char *root; /* folder of all files that may be read (base/file.h); NULL: no restriction */
 } lens_glasses;
 
+/* The columns and keys of .csv files (lens_files.c). */
+enum { LENS_COLUMNS = 17, LENS_KEYS = 11 };
+extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
+
 /* Whether a path ends as such a file does. */
 bool lens_file_named(const char *path);
 

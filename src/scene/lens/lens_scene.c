@@ -38,7 +38,7 @@ static bool ends_in(const char *text, const char *ending)
 static bool belongs(const lens_finder *f, const char *name)
 {
     const size_t length = strlen(f->name);
-    return length == 0 || (strncmp(name, f->name, length) == 0 && name[length] == '-');
+    return length == 0 || (strncmp(name, f->name, length) == 0 && (name[length] == '-' || !name[length]));
 }
 
 static double get(const lens_finder *f, const solid *of, const char *row, int side)

@@ -26,6 +26,7 @@ enum { GAP_SAMPLES = 257 };
 typedef struct element {
     size_t front, back;        /* indices of surfaces: side 1, side 2 */
     double y_1, y_2;           /* of their vertices, in the prescription's unit */
+    double length;             /* between them, as published */
     double diameter;           /* of the rim */
     double before, after;      /* by how much sides 1 and 2 are moved into the neighbours to which it is cemented */
     int64_t rank;              /* priority above that of the others it is cemented to */
@@ -36,6 +37,7 @@ typedef struct element {
 
 typedef struct lens_builder {
     lens_target t;
+    double leader; /* height of the first solid */
     const lens_prescription *p;
     const lens_placement *at;
     mat3 turn;
@@ -46,11 +48,17 @@ typedef struct lens_builder {
 
 /* --- parameters by name --- */
 
-/* Places a solid at a height along the axis. */
+/* Places a solid at a height along the axis. The first one leads, the others follow it. */
 static void put_at(lens_builder *b, const char *name, double y)
 {
     const vec3 p = vec3_add(b->at->position, mat3_apply(b->turn, vec3_make(0.0, b->at->scale * y, 0.0))),
                r = b->at->rotation_deg;
+    if (strcmp(name, b->at->name) != 0) {
+        lens_put(&b->t, name, "follows", "%s", b->at->name);
+        lens_put(&b->t, name, "offset", "0,%.17g,0", b->at->scale * (y - b->leader));
+        return;
+    }
+    b->leader = y;
     lens_put(&b->t, name, "position", "%.17g,%.17g,%.17g", p.x, p.y, p.z);
     lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", r.x, r.y, r.z);
 }
@@ -75,6 +83,14 @@ static void named(const lens_builder *b, object_name name, const char *format, .
     vsnprintf(rest, sizeof rest, format, list);
     va_end(list);
     snprintf(name, sizeof(object_name), "%.30s-%.31s", b->at->name, rest);
+}
+
+static void name_element(const lens_builder *b, element *e)
+{
+    if (b->count == 1)
+        snprintf(e->name, sizeof e->name, "%.60s", b->at->name);
+    else
+        named(b, e->name, "%zu", b->count);
 }
 
 /* --- media --- */
@@ -206,7 +222,7 @@ static void put_element(lens_builder *b, const element *e)
 {
     const double scale = b->at->scale;
     put_at(b, e->name, e->y_1 - e->before);
-    lens_put_number(&b->t, e->name, "thickness", (e->y_2 - e->y_1 + e->before + e->after) * scale);
+    lens_put_number(&b->t, e->name, "thickness", (e->length + e->before + e->after) * scale);
     lens_put_number(&b->t, e->name, "diameter", e->diameter * scale);
 }
 
@@ -236,8 +252,8 @@ static void add_element(lens_builder *b, size_t i)
     const bool forwards = b->y[i + 1] > b->y[i];
     element *e = &b->element[b->count++];
     *e = (element){.front = forwards ? i : i + 1, .back = forwards ? i + 1 : i, .medium = &p->surface[i].medium};
-    e->y_1 = b->y[e->front], e->y_2 = b->y[e->back];
-    named(b, e->name, "%zu", b->count);
+    e->y_1 = b->y[e->front], e->y_2 = b->y[e->back], e->length = fabs(p->surface[i].thickness);
+    name_element(b, e);
     if (b->y[i + 1] == b->y[i] && b->t.code == STATUS_OK)
         b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "give a thickness other than 0",
                              "the element after surface %zu has no thickness", i + 1);
@@ -343,7 +359,7 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
     const lens_surface *s = &b->p->surface[i];
     element *e = &b->element[b->count++];
     *e = (element){.front = i, .back = i, .diameter = s->diameter, .direction = direction, .rank = 0};
-    named(b, e->name, "%zu", b->count);
+    name_element(b, e);
     const double sag = lens_surface_sag(s, 0.5 * s->diameter),
                  thickness = 0.125 * s->diameter + fmax(0.0, sag * direction);
     if ((!(s->diameter > 0.0) || isnan(sag)) && b->t.code == STATUS_OK)
@@ -353,7 +369,7 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
         return;
     const bool ahead = direction > 0.0;
     e->y_1 = ahead ? b->y[i] : b->y[i] - thickness;
-    e->y_2 = e->y_1 + thickness;
+    e->y_2 = e->y_1 + thickness, e->length = thickness;
     const char *paint = mirror_material(b);
     add_solid(b, SHAPE_LENS, e->name);
     lens_put(&b->t, e->name, "material", "%s", paint);

@@ -6,7 +6,8 @@
 #include "scene/lens/lens_files.h"
 #include "scene/model/open.h"
 
-/* Where and how a system is added to a scene. Its solids are NAME-1, NAME-2, ... in the order of the light, NAME-stop,
+/* Where and how a system is added to a scene. Its elements are NAME, NAME-2, NAME-3, ... in the order of the light; all
+ * other solids follow NAME (scene/model/solids.h), so that the system moves and turns with it: NAME-stop,
  * NAME-hole-N for the holes of mirrors, NAME-mount-N and NAME-tube (rings that hold the elements, and the tube around
  * them), and NAME-screen at the image. */
 typedef struct lens_placement {

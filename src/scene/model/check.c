@@ -420,6 +420,26 @@ static status check_scattering(const scene *s, const solid *owner, diagnostic *w
                     "%.80s: caustics by photons do not support its scattering medium", owner->name);
 }
 
+/* Leaders come first, and follow no other solid, so that each place is known. */
+static status check_leader(const scene *s, const solid *owner, diagnostic *why)
+{
+    if (!solid_follows(owner))
+        return STATUS_OK;
+    char remedy[SCENE_NAME_MAX + 80];
+    const int at = scene_find_solid(s, owner->follows);
+    if (at < 0)
+        return diagnose(why, STATUS_BAD_INPUT, object_remedy(s, PARAM_SOLID, owner->follows, remedy, sizeof remedy),
+                        "%.80s follows '%.80s', but no solid before it has that name", owner->name, owner->follows);
+    if (&s->solids[at] >= owner)
+        return diagnose(why, STATUS_BAD_INPUT, "move the solid that is followed before those that follow it",
+                        "%.80s follows %.80s, which does not come before it", owner->name, owner->follows);
+    if (!solid_follows(&s->solids[at]))
+        return STATUS_OK;
+    snprintf(remedy, sizeof remedy, "let it follow %s", s->solids[at].follows);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s follows %.80s, which follows another solid", owner->name,
+                    owner->follows);
+}
+
 static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 {
     diagnostic shape = {.what = ""};
@@ -427,6 +447,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     if (code != STATUS_OK)
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
     TRY(check_references(s, owner, why));
+    TRY(check_leader(s, owner, why));
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_ior_check(&owner->surface, owner->name, why));

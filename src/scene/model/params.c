@@ -32,6 +32,9 @@ const char *shape_name(shape_kind kind)
 
 bool solid_has(const solid *owner, const param *row)
 {
+    if (row->group == PARAM_SOLID && !row->by_shape &&
+        row->type == PARAM_VECTOR) /* a place: one's own, or from another */
+        return solid_follows(owner) == (row->offset == offsetof(solid, offset));
     return row->group == PARAM_MATERIAL || !row->by_shape || shape_has(shape_of(&owner->shape), row->name);
 }
 
@@ -131,6 +134,15 @@ static status wrong_shape(const scene *s, const param_place *at, const path_word
     const char *shape = shape_name(s->solids[at->index].shape.kind), *words[WORDS_MAX];
     size_t count = row_words(s, at, PARAM_SOLID, words, 0);
     char prefix[40], remedy[400];
+    if (!at->row->by_shape && solid_follows(&s->solids[at->index])) {
+        snprintf(remedy, sizeof remedy, "set %s.offset, or %s.%s", path->group, s->solids[at->index].follows,
+                 path->name);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%s follows %s, and has no %s of its own", path->group,
+                        s->solids[at->index].follows, path->name);
+    }
+    if (!at->row->by_shape)
+        return diagnose(why, STATUS_BAD_INPUT, "set its position, or first the solid that it follows",
+                        "%s follows no solid, so it has no offset", path->group);
     snprintf(prefix, sizeof prefix, "a %s has ", shape);
     suggest_list(prefix, words, count, remedy, sizeof remedy);
     size_t used = strlen(remedy);
@@ -334,6 +346,10 @@ static void store(scene *s, const param_place *at, param_value value)
     for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
+    if (row->group == PARAM_SOLID && (row->type == PARAM_VECTOR || row->type == PARAM_WORD)) {
+        s->has_followers |= solid_follows(&s->solids[at->index]);
+        scene_follow_solids(s);
+    }
     if (at->object_group == PARAM_DATA || (names_data(row) && has_loaded_data(s)))
         scene_follow_data(s);
 }

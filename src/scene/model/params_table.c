@@ -572,6 +572,11 @@ static const param table[] = {
      "lens; "
      "a point on a plane; origin of a mesh",
      NULL, OF(solid, shape.position)},
+    {PARAM_SOLID, "follows", PARAM_WORD, "", 0, 0, false, "",
+     "name of an earlier solid with which this one moves and turns, instead of a position and a rotation", NULL,
+     OF(solid, follows), .names = "solid"},
+    VECTOR(PARAM_SOLID, solid, offset, "0,0,0",
+           "with follows: from that solid's position to this one's, along that solid's own axes"),
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0",
      "rotation about the fixed axes x, then y, then z; counter-clockwise for an eye that looks along the axis", NULL,
      OF(solid, shape.rotation_deg)},

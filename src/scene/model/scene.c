@@ -61,6 +61,7 @@ scene *scene_clone(const scene *original)
     s->render = original->render;
     s->camera = original->camera;
     s->background = original->background;
+    s->has_followers = original->has_followers;
     s->path = strdup(original->path);
     s->title = strdup(original->title);
     bool complete = clone_texture(&s->background, &original->background);
@@ -207,6 +208,20 @@ void scene_follow_data(scene *s)
         follow_data(s, &s->solids[i].surface);
     for (size_t i = 0; i < s->light_count; i++)
         s->lights[i].emission_data = data_named(s, s->lights[i].spectrum_data);
+}
+
+void scene_follow_solids(scene *s)
+{
+    for (size_t i = 0; s->has_followers && i < s->solid_count; i++) {
+        solid *owner = &s->solids[i];
+        const int at = solid_follows(owner) ? scene_find_solid(s, owner->follows) : -1;
+        if (at < 0 || (size_t)at == i)
+            continue;
+        const solid_shape *leader = &s->solids[at].shape;
+        const mat3 turn = rotation_from_deg(leader->rotation_deg);
+        owner->shape.position = vec3_add(leader->position, mat3_apply(turn, owner->offset));
+        owner->shape.rotation_deg = leader->rotation_deg;
+    }
 }
 
 const light *scene_sun(const scene *s)

@@ -31,6 +31,7 @@ struct scene {
     size_t beam_count;
     solid *solids;
     size_t solid_count;
+    bool has_followers; /* a solid follows another one, or has done so (scene_follow_solids) */
     solid *new_solid;   /* with all defaults and without a name; NULL until the first solid is added */
     name_tally names;   /* of meshes, textures, data, materials, lights, beams and solids */
     load_limits limits; /* none by default; set by scene_limit */
@@ -51,6 +52,14 @@ const texture_entry *scene_find_texture(const scene *s, const char *name);
 /* Sets what materials and lights refer to by name (index_data and others). Called when data are loaded, or a name or an
  * entry changes. */
 void scene_follow_data(scene *s);
+
+/* Whether a solid has its place from another one, and places those that have: position and rotation. Called when a
+ * place, a name or a leader changes. */
+static inline bool solid_follows(const solid *owner)
+{
+    return owner->follows[0] != 0;
+}
+void scene_follow_solids(scene *s);
 
 /* The first light of kind sun, or NULL. */
 const light *scene_sun(const scene *s);

@@ -22,14 +22,16 @@ enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 typedef struct solid {
     char *name;
     solid_shape shape;
-    int64_t priority;                /* the highest has precedence where solids overlap; among equals the first in the
+    int64_t priority;                 /* the highest has precedence where solids overlap; among equals the first in the
                                       scene */
-    int64_t visible;                 /* 0: omitted from the scene */
-    char mesh[SCENE_NAME_MAX + 1];   /* name of the mesh, for shape mesh */
-    char points[SCENE_NAME_MAX + 1]; /* name of the mesh at whose vertices the solid is repeated; "" for one solid */
-    int64_t shading;                 /* shading_rule, for meshes */
-    int material_index;              /* index in scene.materials; -1 for none */
-    material surface;                /* a copy of the material, with the solid's changes */
+    int64_t visible;                  /* 0: omitted from the scene */
+    char follows[SCENE_NAME_MAX + 1]; /* name of an earlier solid, with which this one moves and turns; "": none */
+    vec3 offset;                      /* from that solid's position, in its frame */
+    char mesh[SCENE_NAME_MAX + 1];    /* name of the mesh, for shape mesh */
+    char points[SCENE_NAME_MAX + 1];  /* name of the mesh at whose vertices the solid is repeated; "" for one solid */
+    int64_t shading;                  /* shading_rule, for meshes */
+    int material_index;               /* index in scene.materials; -1 for none */
+    material surface;                 /* a copy of the material, with the solid's changes */
 } solid;
 
 /* Whether the solid's shape has triangles and it refers to this mesh. */

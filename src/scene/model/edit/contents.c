@@ -122,9 +122,18 @@ static status apply(const group_edit *e, scene *s, const object_list *of, diagno
     return code;
 }
 
+/* Whether the solid moves and turns with another one of the scene. */
+static bool has_leader(const scene *s, const char *name)
+{
+    const int at = scene_find_solid(s, name);
+    return at >= 0 && solid_follows(&s->solids[at]);
+}
+
 static status move_one(const group_edit *e, scene *s, const char *name, vec3 from_first, diagnostic *why)
 {
-    (void)from_first;
+    const bool is_first = from_first.x == 0.0 && from_first.y == 0.0 && from_first.z == 0.0;
+    if (has_leader(s, name) && !is_first)
+        return STATUS_OK;
     return scene_move(s, name, e->by, why);
 }
 
@@ -133,6 +142,8 @@ static status turn_one(const group_edit *e, scene *s, const char *name, vec3 fro
 {
     param_place at;
     const vec3 to = mat3_apply(rotation_from_deg(e->by), from_first);
+    if (has_leader(s, name))
+        return STATUS_OK;
     TRY(scene_move(s, name, vec3_sub(to, from_first), why));
     TRY(param_place_find_object(s, name, &at, why));
     const bool is_point = at.object_group == PARAM_LIGHT && s->lights[at.index].kind == LIGHT_POINT;

@@ -256,9 +256,15 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
     case PARAM_DATA: return remove_data(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
+    case PARAM_SOLID:
+        for (size_t i = 0; s->has_followers && i < s->solid_count; i++)
+            if (strcmp(s->solids[i].follows, name) == 0)
+                return diagnose(why, STATUS_BAD_INPUT, "first set its follows to another solid, or remove it",
+                                "%.80s follows %.80s", s->solids[i].name, name);
+        object_remove(s, at.object_group, at.index);
+        return STATUS_OK;
     case PARAM_LIGHT:
-    case PARAM_BEAM:
-    case PARAM_SOLID: object_remove(s, at.object_group, at.index); return STATUS_OK;
+    case PARAM_BEAM: object_remove(s, at.object_group, at.index); return STATUS_OK;
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
@@ -287,6 +293,8 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
             strcpy(owner->mesh, to);
         if (at->object_group == PARAM_MESH && strcmp(owner->points, from) == 0)
             strcpy(owner->points, to);
+        if (at->object_group == PARAM_SOLID && strcmp(owner->follows, from) == 0)
+            strcpy(owner->follows, to);
         if (at->object_group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
         if (at->object_group == PARAM_DATA)

@@ -100,7 +100,8 @@ static status move_parts(parts_edit *e)
 {
     status code = STATUS_OK;
     for (size_t i = 0; i < e->s->solid_count && e->parts.solids && code == STATUS_OK; i++)
-        code = edit_move(e->s, e->s->solids[i].name, e->by, e->why);
+        if (!solid_follows(&e->s->solids[i]))
+            code = edit_move(e->s, e->s->solids[i].name, e->by, e->why);
     for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = edit_move(e->s, e->s->lights[i].name, e->by, e->why);
     for (size_t i = 0; i < e->s->beam_count && e->parts.beams && code == STATUS_OK; i++)
@@ -117,6 +118,8 @@ static status turn_point(const parts_edit *e, const char *name, const char *row,
 
 static status turn_solid(parts_edit *e, const solid *one)
 {
+    if (solid_follows(one)) /* it turns with its leader */
+        return STATUS_OK;
     TRY(turn_point(e, one->name, "position", one->shape.position));
     return edit_turn(e->s, one->name, e->by, e->why);
 }
@@ -211,7 +214,8 @@ static bool is_scaled(const parts_edit *e, const char *name, const param *row)
         return false;
     if (e->only) { /* one object keeps its place and its material, and render.unit_m stays */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
-               strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
+               strcmp(row->name, "position") != 0 && strcmp(row->name, "offset") != 0 &&
+               strcmp(row->name, "target") != 0;
     }
     return at.object_group == PARAM_SOLID || at.object_group == PARAM_MATERIAL ? e->parts.solids
            : at.object_group == PARAM_LIGHT                                    ? e->parts.lights

@@ -73,6 +73,15 @@ static status move_beam(scene *s, size_t index, vec3 delta, diagnostic *why)
     return code;
 }
 
+/* A solid that follows another one moves by its offset. */
+static status move_solid(scene *s, const solid *one, vec3 delta, diagnostic *why)
+{
+    if (!solid_follows(one))
+        return edit_set_vector(s, one->name, "position", vec3_add(one->shape.position, delta), why);
+    const vec3 within = mat3_apply_transposed(rotation_from_deg(one->shape.rotation_deg), delta);
+    return edit_set_vector(s, one->name, "offset", vec3_add(one->offset, within), why);
+}
+
 status edit_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     param_place at;
@@ -84,7 +93,7 @@ status edit_move(scene *s, const char *name, vec3 delta, diagnostic *why)
     if (at.object_group == PARAM_BEAM)
         return move_beam(s, at.index, delta, why);
     if (at.object_group == PARAM_SOLID)
-        return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
+        return move_solid(s, &s->solids[at.index], delta, why);
     return has_no(name, at.object_group, "place", "move a solid, a light, a beam or the camera", why);
 }
 

@@ -411,6 +411,7 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     if (placement_bounding_sphere(s, &s->solids[of], &centre, &radius))
         step = step_next_to(s, &where, &s->solids[of], centre, radius);
     TRY(copy_object(s, PARAM_SOLID, of, name, why));
+    s->solids[s->solid_count - 1].follows[0] = 0; /* the copy has its own place */
     return scene_move(s, name, step, why);
 }
 
