@@ -64,6 +64,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     -p | --partition) _cuvette_words "$(sinfo --noheader --format=%R 2>/dev/null)" ;;
     -C | --constraint) _cuvette_words "$(sinfo --noheader --format=%f 2>/dev/null | tr ',' '\n' | sort -u)" ;;
     --tasks | --node-type | --memory | --factor | --sbatch) COMPREPLY=() ;;
+    -g | --glasses) _cuvette_files 'agf|AGF' ;;
     --template) _cuvette_files 'slurm|sh' ;;
     --published) _cuvette_files 'csv' ;;
     --export) _cuvette_files 'pov|gltf|glb' ;;
@@ -75,6 +76,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
+        lens) _cuvette_files 'yaml|yml|zmx|dat|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
         mesh) _cuvette_files 'obj|ply|glb' ;;
         study)
@@ -150,7 +152,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify summary compare films power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media lens mesh study compare realism motion lesson lab machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -206,6 +208,13 @@ _cuvette()
             _cuvette_words "$("${COMP_WORDS[0]}" media 2>/dev/null | awk 'NR > 1 { print $1 }')"
         fi
         ;;
+    lens)
+        if [[ $current == -* ]]; then
+            _cuvette_words --output --glasses --system --help --usage --version
+        else
+            _cuvette_files 'zmx|ZMX|dat|csv|yaml|yml'
+        fi
+        ;;
     mesh)
         _cuvette_words --generate --count --level --major --minor --around --tube --profile --crease --size --depth --seed --close --weld --format --output --json \
             --memory-limit --help --usage --version
@@ -257,7 +266,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine
+            _cuvette_words render animate scene trace fan params media lens mesh study compare realism motion lesson lab machine
         fi
         ;;
     esac

@@ -1,10 +1,10 @@
 /* Reads the section lens_systems (read_lens.h):
  *
- *   lens_systems: {NAME: {file: PATH, glasses: PATH or [PATH, ...], position: [X, Y, Z], rotation: [X, Y, Z], scale: S,
- *                  priority: P, mount: SWITCH, screen: SWITCH}, ...}
+ *   lens_systems: {NAME: {file: PATH, glasses: PATH or [PATH, ...], position: [X, Y, Z], rotation: [X, Y, Z],
+ *                  scale: S, priority: P, mount: SWITCH, screen: SWITCH}, ...}
  *
- * Instead of the file, `surfaces` may give a list of maps with the columns of a .csv lens file, next to the keys of such
- * a file (f_number, field_deg, ...). They become the text of such a file, so that there is one reader. */
+ * Instead of the file, `surfaces` may give a list of maps with the columns of a .csv lens file, next to the keys of
+ * such a file (f_number, field_deg, ...). They become the text of such a file, so that there is one reader. */
 #include "scene/file/read_lens.h"
 #include "base/number.h"
 #include "base/text.h"

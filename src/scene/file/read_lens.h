@@ -1,12 +1,12 @@
-/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_solids.h). Private to this
- * folder. */
+/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_solids.h). Private to
+ * this folder. */
 #pragma once
 
 #include "scene/file/document.h"
 #include "scene/model/open.h"
 
-/* Whether the scene's text may name lens files, and below which folder: not for texts that come without their file, such
- * as shared scenes. root: as in file_read_below; borrowed. */
+/* Whether the scene's text may name lens files, and below which folder: not for texts that come without their file,
+ * such as shared scenes. root: as in file_read_below; borrowed. */
 typedef struct lens_access {
     bool allowed;
     const char *root;

@@ -1,10 +1,10 @@
 /* Reads lens files: tables (.dat of pbrt, .csv); lens_zmx.c reads those of Zemax (lens_files.h).
  *
  * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
- * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or field_height
- * with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns: radius (0, empty
- * or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop (any text but 0),
- * hole, name; all but radius and thickness may be missing. */
+ * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
+ * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns:
+ * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
+ * (any text but 0), hole, name; all but radius and thickness may be missing. */
 #include "scene/lens/lens_files.h"
 #include "base/array.h"
 #include "base/file.h"
@@ -367,6 +367,14 @@ bool lens_file_named(const char *path)
     return format_of(path) != NULL;
 }
 
+/* Titles and names become part of scene files: without control characters, and bytes whose encoding is not known. */
+static void make_plain(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || (unsigned char)*text > 0x7e)
+            *text = ' ';
+}
+
 /* What no reader has checked: that the numbers are of a size with which one can compute. */
 static status check(const lens_reader *r)
 {
@@ -374,9 +382,11 @@ static status check(const lens_reader *r)
     const double most = 1e9;
     if (p->count == 0)
         return lens_wrong(r, -1, "give a line for each surface", "the file has no surfaces");
+    make_plain(r->p->title);
     for (size_t i = 0; i < p->count; i++) {
         const lens_surface *s = &p->surface[i];
         lens_reader at = *r;
+        make_plain(r->p->surface[i].name);
         at.line = s->line;
         if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most)
             return lens_wrong(&at, -1, "use numbers below 1e9", "a number of surface %zu is too large", i + 1);

@@ -8,7 +8,7 @@
 #include "scene/lens/lens_prescription.h"
 #include <stdio.h>
 
-/* Catalogue files of glasses (.agf) in which names are looked up that the catalogue of media does not have. Borrowed. */
+/* Catalogue files of glasses (.agf), in which names are looked up that the catalogue of media lacks. Borrowed. */
 typedef struct lens_glasses {
     const char *const *file; /* relative to the working folder */
     size_t count;

@@ -1,9 +1,9 @@
-/* The prescription of a lens system: its surfaces in the order in which light meets them, as an optical designer writes
- * them. Lens systems of scenes, files of prescriptions and reports all use this structure.
+/* The prescription of a lens system: its surfaces in the order in which light meets them, as an optical designer
+ * writes them. Lens systems of scenes, files of prescriptions and reports all use this structure.
  *
  * Conventions, those of optical design: light travels along +y of the system's frame, from the first surface to the
- * last; a radius is above 0 if its centre is on the image's side of the vertex; a thickness is the distance along +y to
- * the next vertex, and is below 0 where the light travels back after a mirror. Lengths are in the unit of the
+ * last; a radius is above 0 if its centre is on the image's side of the vertex; a thickness is the distance along +y
+ * to the next vertex, and is below 0 where the light travels back after a mirror. Lengths are in the unit of the
  * prescription, unit_mm millimetres.
  *
  * Ownership: lens_prescription_release frees the surfaces; names are within the structure. A law's optical data are
@@ -103,8 +103,8 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b);
 /* The sag of a surface at a radius; NaN beyond the end of its conic. Pure. */
 double lens_surface_sag(const lens_surface *s, double rho);
 
-/* The paraxial properties at one wavelength, in the prescription's unit; distances along +y. Kingslake and Johnson, Lens
- * Design Fundamentals, 2nd ed., chapter 3. */
+/* The paraxial properties at one wavelength, in the prescription's unit; distances along +y. Kingslake and Johnson,
+ * Lens Design Fundamentals, 2nd ed., chapter 3. */
 typedef struct lens_first_order {
     double efl;            /* effective focal length, 1 / power; infinite for an afocal system */
     double back;           /* from the last vertex to the focus of an object at infinity */
@@ -123,6 +123,6 @@ typedef struct lens_first_order {
 /* A prescription without a stated stop has it at its first surface. Pure. */
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
 
-/* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below what
- * the beam needs at the stop), and the distance of the image if the last thickness is 0. */
+/* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below
+ * what the beam needs at the stop), and the distance of the image if the last thickness is 0. */
 void lens_prescription_complete(lens_prescription *p);

@@ -9,6 +9,8 @@ typedef struct lens_target {
     diagnostic *why;
 } lens_target;
 
+/* Adds a solid, whose shape is a word of files. */
+void lens_add_solid(lens_target *t, const char *shape, const char *name);
 /* Sets NAME.ROW (scene_set_property). */
 void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

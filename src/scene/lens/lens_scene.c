@@ -35,6 +35,11 @@ static bool ends_in(const char *text, const char *ending)
     return a >= b && strcmp(text + a - b, ending) == 0;
 }
 
+static bool is_shape(const solid *of, const char *word)
+{
+    return strcmp(shape_name(of->shape.kind), word) == 0;
+}
+
 static bool belongs(const lens_finder *f, const char *name)
 {
     const size_t length = strlen(f->name);
@@ -106,12 +111,12 @@ static status find(lens_finder *f)
         const solid *of = &f->s->solids[i];
         if (!belongs(f, of->name))
             continue;
-        if (of->shape.kind == SHAPE_CUP && of->shape.floor == 0.0 &&
+        if (is_shape(of, "cup") && of->shape.floor == 0.0 &&
             (ends_in(of->name, "-stop") || strcmp(of->name, "stop") == 0) && of->visible)
             f->stop = of;
         else if (ends_in(of->name, "-screen") || strcmp(of->name, "screen") == 0)
             f->screen = of;
-        else if (of->shape.kind == SHAPE_LENS && of->visible)
+        else if (is_shape(of, "lens") && of->visible)
             TRY(add_lens(f, of, i));
     }
     if (f->count == 0)

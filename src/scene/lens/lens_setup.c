@@ -30,6 +30,13 @@ void lens_put_number(lens_target *t, const char *name, const char *row, double v
     lens_put(t, name, row, "%s", number_format(value, text));
 }
 
+void lens_add_solid(lens_target *t, const char *shape, const char *name)
+{
+    shape_kind kind = {0};
+    THEN(t->code, scene_shape_named(shape, &kind, t->why));
+    THEN(t->code, scene_add_solid(t->s, name, kind, NULL, t->why));
+}
+
 bool lens_has(const scene *s, param_group group, const char *name)
 {
     return object_find(s, group, name) >= 0;
@@ -107,20 +114,25 @@ static void add_object(setup *u)
     const double d = u->distance, wide = u->object;
     THEN(t->code, scene_add(t->s, PARAM_MATERIAL, "wall-paint", NULL, t->why));
     lens_put(t, "wall-paint", "color", "0.75,0.72,0.65");
-    lens_put(t, "wall-paint", "ambient", "1");
+    lens_put(t, "wall-paint", "ambient", "0.6");
+    lens_put(t, "wall-paint", "diffuse", "0.8");
     lens_put_number(t, "wall-paint", "checker", rounded(wide / 4.0, 3));
     lens_put(t, "wall-paint", "checker_color", "0.1,0.2,0.4");
-    THEN(t->code, scene_add_solid(t->s, "wall", SHAPE_BOX, NULL, t->why));
+    lens_add_solid(t, "box", "wall");
     lens_put(t, "wall", "material", "wall-paint");
     lens_put(t, "wall", "position", "0,0,%.6g", -d * 1.005);
     lens_put(t, "wall", "size", "%.6g,%.6g,%.6g", 4.0 * wide, 2.2 * wide, 0.01 * d);
+    THEN(t->code, scene_add(t->s, PARAM_LIGHT, "sun", NULL, t->why)); /* from the side, past the lens */
+    lens_put(t, "sun", "kind", "sun");
+    lens_put(t, "sun", "position", "2,3,1");
+    lens_put(t, "sun", "target", "0,0,0");
     THEN(t->code, scene_add(t->s, PARAM_MATERIAL, "lamp-glow", NULL, t->why));
     lens_put(t, "lamp-glow", "emission", "8");
     for (int i = 0; i < 5; i++) {
         char name[16];
         snprintf(name, sizeof name, "lamp-%d", i + 1);
         const double at = 0.25 * d, across = 0.32 * wide * at / d * (i - 2);
-        THEN(t->code, scene_add_solid(t->s, name, SHAPE_SPHERE, NULL, t->why));
+        lens_add_solid(t, "sphere", name);
         lens_put(t, name, "material", "lamp-glow");
         lens_put(t, name, "position", "%.6g,%.6g,%.6g", across, 0.25 * across, -at);
         lens_put_number(t, name, "radius", rounded(0.015 * wide * at / d, 3));
@@ -135,7 +147,7 @@ static void add_board(setup *u)
     if (tube < 0)
         return;
     const solid_shape of = t->s->solids[tube].shape;
-    THEN(t->code, scene_add_solid(t->s, "board", SHAPE_CUP, NULL, t->why));
+    lens_add_solid(t, "cup", "board");
     lens_put(t, "board", "material", "blackened");
     lens_put(t, "board", "position", "0,0,%.9g", of.position.z + 0.45 * of.height);
     lens_put(t, "board", "rotation", "90,0,0");

@@ -68,11 +68,6 @@ static bool has_row(const char *row)
     return param_find(PARAM_SOLID, row) != NULL;
 }
 
-static void add_solid(lens_builder *b, shape_kind shape, const char *name)
-{
-    THEN(b->t.code, scene_add_solid(b->t.s, name, shape, NULL, b->t.why));
-}
-
 static void named(const lens_builder *b, object_name name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static void named(const lens_builder *b, object_name name, const char *format, ...)
@@ -264,7 +259,7 @@ static void add_element(lens_builder *b, size_t i)
     if (b->t.code != STATUS_OK)
         return;
     medium_material(b, e->medium, glass);
-    add_solid(b, SHAPE_LENS, e->name);
+    lens_add_solid(&b->t, "lens", e->name);
     lens_put(&b->t, e->name, "material", "%s", glass);
     put_side(b, e->name, 1, &p->surface[e->front]);
     put_side(b, e->name, 2, &p->surface[e->back]);
@@ -335,7 +330,7 @@ static void add_hole(lens_builder *b, const element *e, double hole)
     const double length = e->y_2 - e->y_1;
     const lens_surface *of = &b->p->surface[e->front];
     const double sag = fabs(lens_surface_sag(of, 0.5 * e->diameter));
-    add_solid(b, SHAPE_CYLINDER, name);
+    lens_add_solid(&b->t, "cylinder", name);
     lens_put(&b->t, name, "material", "%s", plug);
     put_at(b, name, e->y_1 - sag - length);
     lens_put_number(&b->t, name, "radius", 0.5 * hole * b->at->scale);
@@ -371,7 +366,7 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
     e->y_1 = ahead ? b->y[i] : b->y[i] - thickness;
     e->y_2 = e->y_1 + thickness, e->length = thickness;
     const char *paint = mirror_material(b);
-    add_solid(b, SHAPE_LENS, e->name);
+    lens_add_solid(&b->t, "lens", e->name);
     lens_put(&b->t, e->name, "material", "%s", paint);
     put_side(b, e->name, ahead ? 1 : 2, s);
     lens_put_number(&b->t, e->name, ahead ? "radius_2" : "radius_1", 0.0);
@@ -388,7 +383,7 @@ static void add_ring(lens_builder *b, const char *name, double inner, double out
 {
     const double scale = b->at->scale;
     const char *paint = black(b);
-    add_solid(b, SHAPE_CUP, name);
+    lens_add_solid(&b->t, "cup", name);
     lens_put(&b->t, name, "material", "%s", paint);
     put_at(b, name, y);
     lens_put_number(&b->t, name, "radius", outer * scale);
@@ -479,7 +474,7 @@ static void add_screen(lens_builder *b)
     if (!isfinite(y) || isnan(sag) || !(half > 0.0))
         return;
     named(b, name, "screen");
-    add_solid(b, SHAPE_LENS, name);
+    lens_add_solid(&b->t, "lens", name);
     put_at(b, name, f.direction > 0.0 ? y : y - thickness);
     lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_1" : "radius_2", p->image_radius * b->at->scale);
     lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_2" : "radius_1", 0.0);

@@ -6,8 +6,8 @@
 #include "scene/lens/lens_files.h"
 #include "scene/model/open.h"
 
-/* Where and how a system is added to a scene. Its elements are NAME, NAME-2, NAME-3, ... in the order of the light; all
- * other solids follow NAME (scene/model/solids.h), so that the system moves and turns with it: NAME-stop,
+/* Where and how a system is added to a scene. Its elements are NAME, NAME-2, NAME-3, ... in the order of the light;
+ * all other solids follow NAME (scene/model/solids.h), so that the system moves and turns with it: NAME-stop,
  * NAME-hole-N for the holes of mirrors, NAME-mount-N and NAME-tube (rings that hold the elements, and the tube around
  * them), and NAME-screen at the image. */
 typedef struct lens_placement {
@@ -23,15 +23,15 @@ typedef struct lens_placement {
 
 status lens_add_to_scene(scene *s, const lens_prescription *p, const lens_placement *at, diagnostic *why);
 
-/* A new scene about a system named objective, whose light travels along +z from a chequered wall at the distance of the
- * object (50 focal lengths, if that is infinite): a camera behind the image that sees it through the exit pupil, a beam
- * for each field (objective-field-N) and a screen, both not visible. Lengths are in the prescription's unit. */
+/* A new scene about a system named objective, whose light travels along +z from a chequered wall at the distance of
+ * the object (50 focal lengths, if that is infinite): a camera behind the image that sees it through the exit pupil,
+ * a beam for each field (objective-field-N) and a screen, both not visible. Lengths are in the prescription's unit. */
 status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses, scene **out, diagnostic *why);
 
-/* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or "": all
- * of the scene) must have one common axis, in the order of their positions along it. The stop is the cup NAME-stop, or
- * any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that ends in -screen,
- * or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's data must be loaded
- * (scene_load) for media of files. Fields, wavelengths and title are not in a scene's solids; they are those of its
- * beams named NAME-field-N, or the axis and render.lambda_nm. */
+/* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or "":
+ * all of the scene) must have one common axis, in the order of their positions along it. The stop is the cup
+ * NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that
+ * ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's
+ * data must be loaded (scene_load) for media of files. Fields, wavelengths and title are not in a scene's solids;
+ * they are those of its beams named NAME-field-N, or the axis and render.lambda_nm. */
 status lens_of_scene(const scene *s, const char *name, lens_prescription *out, diagnostic *why);
