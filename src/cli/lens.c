@@ -114,7 +114,7 @@ static status read_scene(const lens_request *request, lens_prescription *out, di
     status code = scene_input_read(&input, &s, why);
     THEN(code, scene_input_load(s, why));
     if (code == STATUS_OK)
-        code = locate_failure(why, request->path, lens_of_scene(s, request->system, out, why));
+        code = locate_failure(why, request->path, lens_of_scene(s, request->system, out, NULL, why));
     scene_destroy(s);
     return code;
 }

@@ -155,6 +155,9 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
     return f;
 }
 
+/* Real rays are outside paraxial ones; a rim that just lets these pass would vignette them. */
+#define ROOM_FOR_REAL_RAYS 1.05
+
 void lens_prescription_complete(lens_prescription *p)
 {
     if (p->count == 0)
@@ -164,7 +167,7 @@ void lens_prescription_complete(lens_prescription *p)
         lens_surface *s = &p->surface[i];
         const double needed = 2.0 * (fabs(f.marginal[i]) + fabs(f.chief[i]));
         if (!(s->diameter > 0.0) && isfinite(needed))
-            s->diameter = (int)i == p->stop ? f.stop_diameter : needed;
+            s->diameter = (int)i == p->stop ? f.stop_diameter : ROOM_FOR_REAL_RAYS * needed;
     }
     lens_surface *last = &p->surface[p->count - 1];
     if (last->thickness == 0.0 && isfinite(f.image))

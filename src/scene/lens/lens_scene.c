@@ -307,7 +307,17 @@ static void read_beams(const lens_finder *f)
         add_wavelength(p, f->s->render.lambda_nm);
 }
 
-status lens_of_scene(const scene *s, const char *name, lens_prescription *out, diagnostic *why)
+/* Where the first surface of the prescription is, which may be the stop before the first lens. */
+static lens_placement placement_of(const lens_finder *f)
+{
+    const double stop_y = f->stop ? along(f, f->stop) + 0.5 * f->stop->shape.height : INFINITY;
+    return (lens_placement){.name = f->stop ? f->stop->name : NULL,
+                            .position = vec3_add(f->origin, vec3_scale(f->axis, fmin(stop_y, f->lens[0].y_1))),
+                            .rotation_deg = f->lens[0].of->shape.rotation_deg,
+                            .scale = 1.0};
+}
+
+status lens_of_scene(const scene *s, const char *name, lens_prescription *out, lens_placement *at, diagnostic *why)
 {
     *out = lens_prescription_empty();
     lens_finder *f = calloc(1, sizeof *f);
@@ -325,6 +335,8 @@ status lens_of_scene(const scene *s, const char *name, lens_prescription *out, d
     if (code == STATUS_OK) {
         read_beams(f);
         lens_prescription_complete(out);
+        if (at)
+            *at = placement_of(f);
     } else {
         lens_prescription_release(out);
     }

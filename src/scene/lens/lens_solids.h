@@ -33,5 +33,6 @@ status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses
  * NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that
  * ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's
  * data must be loaded (scene_load) for media of files. Fields, wavelengths and title are not in a scene's solids;
- * they are those of its beams named NAME-field-N, or the axis and render.lambda_nm. */
-status lens_of_scene(const scene *s, const char *name, lens_prescription *out, diagnostic *why);
+ * they are those of its beams named NAME-field-N, or the axis and render.lambda_nm. *at, unless at is NULL: the frame
+ * of the system, and as its name that of the solid of its stop, NULL for none, borrowed. */
+status lens_of_scene(const scene *s, const char *name, lens_prescription *out, lens_placement *at, diagnostic *why);
