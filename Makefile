@@ -36,7 +36,7 @@ else
 build := build/$(config)$(clang:%=-%)
 endif
 
-PACKAGES := libpng zlib libjpeg hwloc yaml-0.1 jansson
+PACKAGES := libpng zlib libjpeg hwloc yaml-0.1 jansson kissfft-float
 # Of OpenEXR only the library in C, without the C++ ones that its description for pkg-config names.
 OPENEXR := -lOpenEXRCore
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
@@ -206,6 +206,7 @@ $(build)/obj/base/build_id.o: private all_cflags += \
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call compile,$(all_cflags) $(pkg_cflags) $(own_cflags))
 $(build)/obj/study/plot/plot_script.o: plots/style.gp
+$(build)/obj/cli/lens_report.o: plots/lens.gp
 $(build)/obj/study/run/slurm.o: experiments/cluster/study.slurm
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private own_cflags = $(web_cflags)

@@ -28,6 +28,7 @@ status command_study(int argc, char **argv, diagnostic *why);
 status command_compare(int argc, char **argv, diagnostic *why);
 status command_realism(int argc, char **argv, diagnostic *why);
 status command_motion(int argc, char **argv, diagnostic *why);
+status command_lens_report(int argc, char **argv, diagnostic *why); /* `lens report`, by command_lens */
 status command_lesson(int argc, char **argv, diagnostic *why);
 status command_lab(int argc, char **argv, diagnostic *why);
 status command_machine(int argc, char **argv, diagnostic *why);

@@ -65,6 +65,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     -C | --constraint) _cuvette_words "$(sinfo --noheader --format=%f 2>/dev/null | tr ',' '\n' | sort -u)" ;;
     --tasks | --node-type | --memory | --factor | --sbatch) COMPREPLY=() ;;
     -g | --glasses) _cuvette_files 'agf|AGF' ;;
+    --figure) _cuvette_files 'png|svg|pdf' ;;
     --template) _cuvette_files 'slurm|sh' ;;
     --published) _cuvette_files 'csv' ;;
     --export) _cuvette_files 'pov|gltf|glb' ;;
@@ -209,10 +210,13 @@ _cuvette()
         fi
         ;;
     lens)
-        if [[ $current == -* ]]; then
+        if [[ $current == -* && ${COMP_WORDS[2]-} == report ]]; then
+            _cuvette_words --json --csv --figure --system --glasses --field --frequency --fan --spot --wave --help --usage --version
+        elif [[ $current == -* ]]; then
             _cuvette_words --output --glasses --system --help --usage --version
         else
             _cuvette_files 'zmx|ZMX|dat|csv|yaml|yml'
+            ((COMP_CWORD > 2)) || [[ report != "$current"* ]] || COMPREPLY+=(report)
         fi
         ;;
     mesh)

@@ -1,4 +1,5 @@
 /* `cuvette lens`: reads and writes lens prescriptions, and turns them into scenes and back. */
+#include "base/text.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -9,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { GLASS_FILES_MAX = 16 };
@@ -184,8 +186,22 @@ static status run(const lens_request *request, diagnostic *why)
     return code;
 }
 
+/* `lens report`: its first word is the command's. */
+static status run_report(int argc, char **argv, diagnostic *why)
+{
+    char *program = text_format("%s report", argv[0]);
+    if (!program)
+        return out_of_memory(why);
+    argv[1] = program;
+    const status code = command_lens_report(argc - 1, argv + 1, why);
+    free(program);
+    return code;
+}
+
 status command_lens(int argc, char **argv, diagnostic *why)
 {
+    if (argc > 1 && strcmp(argv[1], "report") == 0)
+        return run_report(argc, argv, why);
     lens_request request = {0};
     TRY(command_form_read(&form, argc, argv, &request, why));
     if (!request.path)

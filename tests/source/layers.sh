@@ -28,7 +28,7 @@ check() {
                 for (j = 2; j <= n; j++) place[word[1], word[j]] = j
             }
             split("base 0 optics 1 geometry 1 measure 1 image 1 import 1 softbody 2 scene 3 render 4 " \
-                  "realism 5 lint 5 job 6 lesson 7 study 8 report 8 engine 9 web 10 cli 10 python 10 " \
+                  "realism 5 lens 5 lint 5 job 6 lesson 7 study 8 report 8 engine 9 web 10 cli 10 python 10 " \
                   "mpi 11 wasm 11 manual 11", word)
             for (i = 1; i in word; i += 2) layer[word[i]] = word[i + 1]
         }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "study/study.h"
+#include <stdio.h>
 
 typedef enum plot_log { PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY } plot_log;
 
@@ -29,3 +30,9 @@ status study_plot_write(const study *s, const plot_request *request, const char 
 /* Runs gnuplot on BASE.gp; BASE.png, .svg or .pdf (format: png, svg, pdf) appears complete or not at all.
  * STATUS_INTERRUPTED after limit_s, or when cancelled. */
 status study_plot_draw(const char *base, const char *format, double limit_s, diagnostic *why);
+
+/* The beginning of any script that study_plot_draw draws: how to redraw it, `rows` (the path of the file BASE with the
+ * ending `data`, unless that is NULL), width and height in px, and the style. by: the command that writes it. */
+void plot_script_open(FILE *out, const char *by, const char *base, const char *data, int width, int height);
+/* A text as gnuplot reads it, in quotes. */
+void plot_script_text(FILE *out, const char *text);

@@ -117,7 +117,6 @@ status plot_caption_add(plot_plan *p, diagnostic *why, const char *format, ...) 
 /* Write parts of a script: its head with the style (data: and with the path of the data file); a text as a string of
  * gnuplot. */
 void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data);
-void plot_script_text(FILE *out, const char *text);
 status plot_script_write(const plot_plan *p, const char *base, diagnostic *why);
 status plot_sheet_write(plot_plan *p, const char *base, diagnostic *why);
 

@@ -43,14 +43,14 @@ static void put_style(FILE *out)
     }
 }
 
-void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data)
+void plot_script_open(FILE *out, const char *by, const char *base, const char *data, int width, int height)
 {
     const char *name = file_name_of(base);
     fprintf(out,
-            "# Written by `cuvette study plot` for the study %s. Edit it, and redraw it from any folder:\n"
+            "# Written by `%s`. Edit it, and redraw it from any folder:\n"
             "#   gnuplot %s.gp                          writes %s.png next to this script\n"
             "#   gnuplot -e \"format = 'svg'\" %s.gp     writes %s.svg; also 'pdf'\n",
-            p->s->name, name, name, name, name);
+            by, name, name, name, name);
     fputs("here = ARG0\n"
           "while (strlen(here) > 0 && here[strlen(here):strlen(here)] ne \"/\") { here = here[1:strlen(here)-1] }\n"
           "if (!exists(\"format\")) { format = \"png\" }\n"
@@ -61,14 +61,21 @@ void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data
     if (data) {
         fputs("rows = here.", out);
         char file[300];
-        snprintf(file, sizeof file, "%.290s.tsv", name);
+        snprintf(file, sizeof file, "%.290s%s", name, data);
         plot_script_text(out, file);
         fputc('\n', out);
     }
-    fprintf(out, "width = %d; height = %d\n\n# --- style: plots/style.gp ---\n", p->width, p->height);
+    fprintf(out, "width = %d; height = %d\n\n# --- style: plots/style.gp ---\n", width, height);
     put_style(out);
-    fputs("\n# --- figure ---\nset datafile separator tab\nset datafile missing \"NA\"\nset termoption noenhanced\n",
-          out);
+    fputs("\n# --- figure ---\n", out);
+}
+
+void plot_script_head(FILE *out, const plot_plan *p, const char *base, bool data)
+{
+    char by[160];
+    snprintf(by, sizeof by, "cuvette study plot` for the study `%.100s", p->s->name);
+    plot_script_open(out, by, base, data ? ".tsv" : NULL, p->width, p->height);
+    fputs("set datafile separator tab\nset datafile missing \"NA\"\nset termoption noenhanced\n", out);
     put_setting(out, "label 1", p->s->title ? p->s->title : p->s->name,
                 " at screen 0.5,1 offset 0,-0.9 center font \",11\" textcolor rgb ink");
     for (size_t i = 0; i < p->caption_count; i++) {

@@ -1,0 +1,127 @@
+# The page of `cuvette lens report --figure`, which writes this script with the style and these: rows, the report as
+# CSV; lens, its title; fields, their number; field_unit; waves, the wavelengths in nm; first, the lens in a line.
+set datafile separator comma
+set datafile missing NaN
+set termoption noenhanced
+
+across = fields < 5 ? fields : 5
+pick(section, field, nm, quantity) = strcol(1) eq section && (field == 0 || column(3) == field) && \
+    (nm == 0 || abs(column(4) - nm) < 1e-6) && strcol(6) eq quantity
+curve(section, field, nm, quantity) = pick(section, field, nm, quantity) ? column(5) : NaN
+nm(i) = real(word(waves, i))
+colour(i) = i == 1 ? green : i == 2 ? blue : i == 3 ? vermillion : i == 4 ? purple : i == 5 ? orange : sky
+field_value(f) = real(system(sprintf("awk -F, '$1 == \"fields\" && $3 == %d { s += $7*$7 } END { print sqrt(s) }' '%s'", f, rows)))
+label_of(f) = sprintf("field %d: %.4g %s", f, field_value(f), field_unit)
+
+left(i, n) = 0.08 + (i - 1)*0.925/n
+right(i, n) = left(i, n) + 0.925/n - 0.07
+place(i, n, top, bottom) = sprintf("set lmargin at screen %.4f; set rmargin at screen %.4f; set tmargin at screen %.4f; set bmargin at screen %.4f", left(i, n), right(i, n), top, bottom)
+
+set label 1 lens at screen 0.5,0.985 center font ",12" textcolor rgb ink
+set label 2 first at screen 0.5,0.967 center font ",8" textcolor rgb grey
+set tics font ",7"
+set title font ",8"
+set xlabel font ",7" offset 0,0.6
+set ylabel font ",7" offset 0.8,0
+unset key
+set multiplot
+
+# Ray fans and wavefronts by field.
+set xrange [-1:1]
+set xtics -1,0.5,1
+set xzeroaxis lt 8
+set yrange [*<-1e-6:1e-6<*]
+do for [f=1:across] {
+    eval place(f, across, 0.930, 0.800)
+    set title label_of(f)
+    set ylabel f == 1 ? "ray aberration, mm" : ""
+    set xlabel ""
+    plot for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "e_tangential")):7 with lines lw 1.4 lc rgb colour(i), \
+        for [i=1:words(waves)] rows using (curve("fan-sagittal", f, nm(i), "e_sagittal")):7 with lines lw 1.4 dt (4,3) lc rgb colour(i)
+    if (f == 1) { unset label 1; unset label 2 }
+    eval place(f, across, 0.770, 0.640)
+    set title ""
+    set ylabel f == 1 ? "wavefront, waves" : ""
+    set xlabel "pupil"
+    plot for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "opd")):7 with lines lw 1.4 lc rgb colour(i), \
+        for [i=1:words(waves)] rows using (curve("fan-sagittal", f, nm(i), "opd")):7 with lines lw 1.4 dt (4,3) lc rgb colour(i)
+}
+
+# Spots, all to one scale, with the circle of Airy's first zero.
+unset xzeroaxis
+unset grid
+set xlabel ""
+stats rows using (strcol(1) eq "spot" && strcol(6) eq "geo" ? column(7) : NaN) nooutput name "geo_"
+stats rows using (strcol(1) eq "spot" && strcol(6) eq "airy_radius" ? column(7) : NaN) nooutput name "airy_"
+most = 1.1*(geo_max > airy_max ? geo_max : airy_max)
+set xrange [-most:most]
+set yrange [-most:most]
+set xtics auto
+set xtics -most/1.1,most/1.1,most/1.1 format "%.2g"
+set ytics -most/1.1,most/1.1,most/1.1 format "%.2g"
+set size ratio -1
+do for [f=1:across] {
+    eval place(f, across, 0.585, 0.440)
+    set ylabel f == 1 ? "spot, mm from the chief ray" : ""
+    set object 1 circle at 0,0 size airy_max front fs empty border lc rgb ink lw 0.8
+    # dx and dy are rows in turn: x is kept until its y comes.
+    plot for [i=1:words(waves)] keep = 0.0 rows using \
+        (strcol(1) eq "spot-points" && strcol(6) eq "dx" ? (keep = column(7), NaN) : pick("spot-points", f, nm(i), "dy") ? keep : NaN):7 \
+        with dots lc rgb colour(i)
+}
+unset object 1
+set size noratio
+set format "%h"
+set grid ytics lc rgb pale lw 0.5 dt solid
+
+# Along the field, and along the pupil. Rounding errors do not fill a panel.
+set autoscale
+set yrange [*<-1e-6:1e-6<*]
+set xtics auto
+set ytics auto
+set key bottom left font ",7" samplen 1.5
+eval place(1, 3, 0.385, 0.235)
+set title "foci of narrow pencils"
+set xlabel sprintf("field, %s", field_unit)
+set ylabel "from the image, mm"
+plot rows using (curve("field-curves", 0, 0, "tangential")):7 with lines lt 1 title "tangential", \
+    rows using (curve("field-curves", 0, 0, "sagittal")):7 with lines lt 2 dt (4,3) title "sagittal"
+eval place(2, 3, 0.385, 0.235)
+set title "distortion"
+set ylabel "%"
+unset key
+plot rows using (curve("field-curves", 0, 0, "distortion")):7 with lines lt 1
+eval place(3, 3, 0.385, 0.235)
+set title "focus by height in the pupil"
+set xlabel "pupil"
+set ylabel "from the image, mm"
+plot for [i=1:words(waves)] rows using (curve("longitudinal", 0, nm(i), "focus")):7 with lines lw 1.4 lc rgb colour(i)
+
+eval place(1, 3, 0.185, 0.045)
+set title "MTF with diffraction; sagittal dashed, limit dotted"
+set xlabel "cycles/mm"
+set ylabel ""
+set yrange [0:1]
+set key top right font ",7" samplen 1.5 noreverse Right
+plot for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "tangential")):7 with lines lt f title label_of(f), \
+    for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "sagittal")):7 with lines lt f dt (4,3) notitle, \
+    rows using (curve("mtf-diffraction", 1, 0, "limit")):7 with lines lt 8 notitle
+eval place(2, 3, 0.185, 0.045)
+set title "light within a circle, with diffraction"
+set xlabel "radius, mm"
+set key bottom right
+plot for [f=1:across] rows using (curve("encircled", f, nm(1), "fraction")):7 with lines lt f title label_of(f)
+eval place(3, 3, 0.185, 0.045)
+set title "Seidel sums by surface"
+set autoscale y
+set offsets 0,0,graph 0.25,0
+set xlabel "surface"
+set ylabel "mm"
+set style fill solid 1.0 noborder
+set boxwidth 0.15
+set xtics 1
+set key top left font ",7" noreverse Left maxrows 2
+kinds = "S_I S_II S_III S_IV S_V"
+plot for [k=1:5] rows using (strcol(1) eq "seidel" && strcol(6) eq word(kinds, k) ? column(2) + 0.16*(k - 3) : NaN):7 \
+    with boxes lc rgb colour(k) title word(kinds, k)
+unset multiplot

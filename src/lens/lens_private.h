@@ -1,0 +1,147 @@
+/* Shared by the files of the room: the prescription at one wavelength, its first order, real rays and the beam of one
+ * field. Pure, unless a function takes a bench: that borrows its model, and serves one thread. */
+#pragma once
+
+#include "lens/lens.h"
+#include "render/inspect/probe.h"
+
+/* --- paraxial.c --- */
+
+/* A surface at one wavelength. Indices are below 0 where the light travels back, as in textbooks on mirrors (Welford,
+ * Aberrations of Optical Systems, 1986, 4.5). */
+typedef struct lens_step {
+    double c, k, even[LENS_EVEN_TERMS], z; /* curvature, conic constant, coefficients from r^4 on, vertex; mm */
+    double n, n_after, clear;              /* clear radius; INFINITY: none */
+    bool mirror, silent;                   /* silent: it neither bends nor reflects */
+} lens_step;
+
+typedef struct lens_model {
+    lens_step step[LENS_SURFACES_MAX];
+    int count, stop;
+    double lambda_nm, n_object, n_image;
+    double object_distance, z_image, image_c; /* INFINITY for a far object; curvature of the image's surface */
+    double unit_mm;
+} lens_model;
+
+/* Sag at a squared radius and its first two derivatives by the radius; NaN beyond the surface's end. */
+double lens_sag(const lens_step *s, double rho, double *slope, double *bend);
+
+status lens_model_make(const lens_prescription *p, double lambda_nm, lens_model *out, diagnostic *why);
+
+/* Heights and slopes of a paraxial ray at each surface; u[i] before surface i, u[count] after the last. */
+typedef struct lens_trail {
+    double y[LENS_SURFACES_MAX], u[LENS_SURFACES_MAX + 1];
+} lens_trail;
+void lens_trail_make(const lens_model *m, double y, double u, lens_trail *out);
+
+/* Gaussian constants; positions from the first vertex (z_...), mm. */
+typedef struct lens_first {
+    double power, bfl, ffl, z_front, z_rear, z_principal, z_principal_rear, z_nodal, z_nodal_rear;
+    double z_entrance, entrance_d, z_exit, exit_d, stop_radius, per_height; /* per_height: of the stop, by the pupil */
+    double stop_real; /* the stop's radius for real rays: lens_stop_radius */
+    double f_number, working_number, z_focus, magnification, invariant, slope_max;
+    lens_trail marginal, chief;
+} lens_first;
+
+status lens_first_make(const lens_prescription *p, const lens_model *m, lens_first *out, diagnostic *why);
+
+/* The largest distance of a field from the axis, in the prescription's own unit. */
+double lens_field_most(const lens_prescription *p);
+
+/* --- rays.c --- */
+
+typedef struct lens_bench {
+    const lens_model *m;
+    const lens_place *at;
+    probe *p;
+    ray_tree tree;
+    double around;               /* index of the surroundings, to which those of the paths are relative */
+    double R[LENS_SURFACES_MAX]; /* reflectance of each surface for the ray that was traced last */
+} lens_bench;
+
+status lens_bench_open(const lens_model *m, const lens_place *at, isa level, lens_bench *out, diagnostic *why);
+void lens_bench_close(lens_bench *b);
+
+/* Why a ray does not arrive: nothing, it left the sequence of surfaces (a rim, a mount, total reflection), or it never
+ * reached the stop. */
+typedef enum lens_loss { LENS_PASSES, LENS_LOST, LENS_LOST_EARLY } lens_loss;
+
+typedef struct lens_ray {
+    vec3 start, launched; /* where and in which direction it began */
+    vec3 hit[LENS_SURFACES_MAX];
+    vec3 along[LENS_SURFACES_MAX + 1]; /* before surface i; the last is that at the image */
+    vec3 image, direction;             /* on the image's surface; unit vector */
+    double path, stop_x, stop_y;       /* optical path from the start to the image's surface */
+    lens_loss loss;
+    int lost_at;
+} lens_ray;
+
+status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagnostic *why);
+
+/* The rays of one field at one wavelength. Launch coordinates (X, Y) are mm in a plane through `centre`, at right
+ * angles to `along`. */
+typedef struct lens_beam {
+    lens_bench *b;
+    bool far;
+    vec3 object, centre, along, across, up;
+    double back, stop_radius;
+    double launch[2]; /* of the chief ray */
+    double t[2];      /* the field's own direction across the axis: tangential; Y on the axis */
+    /* Derivatives by the launch, row by row: of the stop's coordinates, and of the cosines of direction at the image
+     * along the field's direction and at right angles to it. The latter are 0 where an obstruction hides them. */
+    double per[4], cosines_per[4];
+    double base[2], base_cosines[2]; /* of the ray at which they were taken: its launch, its cosines */
+    lens_ray chief;
+    bool blocked; /* the chief ray does not arrive; `chief` is then the mean of rays that do */
+} lens_beam;
+
+/* x and y: a field, in the prescription's own unit. */
+status lens_beam_aim(lens_bench *b, const lens_prescription *p, const lens_first *first, double x, double y,
+                     lens_beam *out, diagnostic *why);
+
+/* The launches of the last rays of a row of evenly spaced targets, and what continues them: a parabola through three, a
+ * line through two. A ray that did not arrive ends the row. */
+typedef struct lens_row_launch {
+    double last[3][2];
+    int count;
+} lens_row_launch;
+/* False, and nothing changed: there are fewer than two. */
+bool lens_row_guess(const lens_row_launch *row, double launch[2]);
+void lens_row_add(lens_row_launch *row, bool arrives, const double launch[2]);
+
+/* The ray through a point of the stop, in units of its radius. `launch`: where the search begins and what it found;
+ * NULL begins at the chief ray. */
+status lens_beam_ray(lens_beam *bundle, double px, double py, double launch[2], lens_ray *out, diagnostic *why);
+
+/* The ray whose direction at the image has the cosines `target` along and across the field's direction, from a first
+ * guess of its launch, which is replaced by what was found. */
+status lens_beam_cosines(lens_beam *bundle, const double target[2], double tolerance, double launch[2], lens_ray *out,
+                         diagnostic *why);
+
+/* Waves by which the ray's wavefront is ahead of the sphere about the chief ray's image whose radius reaches to the
+ * exit pupil; NaN for a ray that does not arrive. */
+double lens_opd(const lens_beam *bundle, const lens_first *first, const lens_ray *r);
+
+/* The radius of the stop for the stated aperture: by a real ray on the axis. */
+status lens_stop_radius(lens_bench *b, const lens_prescription *p, lens_first *first, diagnostic *why);
+
+/* --- what the sections compute --- */
+
+typedef struct lens_study {
+    const lens_prescription *p;
+    const lens_options *options;
+    lens_report *out;
+    const lens_model *model; /* one for each wavelength */
+    lens_bench *bench;
+    lens_first first; /* at the primary wavelength */
+    size_t waves, primary;
+    double frequency_most;
+} lens_study;
+
+void lens_row_put(lens_report *r, lens_row row);
+
+void lens_seidel(lens_study *s);
+status lens_ghosts(lens_study *s, diagnostic *why);
+status lens_images(lens_study *s, size_t field, diagnostic *why);
+status lens_curves(lens_study *s, diagnostic *why);
+status lens_waves(lens_study *s, size_t field, diagnostic *why);
