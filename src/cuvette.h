@@ -693,6 +693,27 @@ CUVETTE_API cuvette_status cuvette_scene_each_curve(const cuvette_scene *scene,
 CUVETTE_API cuvette_status cuvette_scene_curve(const cuvette_scene *scene, const char *name, double (*points)[3],
                                                size_t room, size_t *count, cuvette_diagnostic *why);
 
+/* --- the report of a lens --- */
+
+/* A number of `cuvette lens report`: cuvette-lens-report(1) has the sections and quantities. Lengths are mm. The texts
+ * are constants. */
+typedef struct cuvette_lens_number {
+    const char *section;  /* "first-order" */
+    const char *quantity; /* "efl" */
+    const char *unit;     /* "mm"; "" for ratios */
+    int surface, field;   /* from 1; 0: the number has none */
+    double lambda_nm;     /* 0: all wavelengths */
+    double x;             /* the abscissa; NaN: none */
+    double value;         /* NaN where no ray arrives */
+} cuvette_lens_number;
+
+/* Visits the numbers of the report on the scene's lens, until visit returns false. system: the word with which the
+ * names of its solids begin; NULL: all lenses of the scene. CUVETTE_BAD_INPUT if they are not one lens that has a
+ * focus. Not in the browser. */
+CUVETTE_API cuvette_status cuvette_scene_each_lens_number(const cuvette_scene *scene, const char *system,
+                                                          bool (*visit)(void *context, const cuvette_lens_number *one),
+                                                          void *context, cuvette_diagnostic *why);
+
 /* --- images and their differences --- */
 
 typedef struct cuvette_image cuvette_image;

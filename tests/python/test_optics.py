@@ -26,6 +26,23 @@ def test_realism_equals_the_programs(program):
         cuvette.Scene().realism()
 
 
+def test_lens_report_equals_the_programs(program, tmp_path):
+    path = tmp_path / "triplet.yaml"
+    program("lens", ROD.replace("scenes/rod.yaml", "lenses/cooke-triplet.csv"), "-o", str(path))
+    own = cuvette.read(path).lens_report()
+    other = json.loads(program("lens", "report", str(path), "--json"))["sections"]
+    assert set(own) == set(other)
+    assert own["first-order"]["efl"] == [other["first-order"]["values"]["efl"]]
+    for section in ("fan-tangential", "seidel", "spot", "mtf-diffraction", "wavefront"):
+        for name, column in other[section]["values"].items():
+            theirs = numpy.array([numpy.nan if v is None else v for v in column])
+            assert numpy.array_equal(own[section][name], theirs, equal_nan=True), (section, name)
+    with pytest.raises(cuvette.InputError, match="no lens"):
+        cuvette.read(path).lens_report("telescope")
+    with pytest.raises(cuvette.InputError):
+        cuvette.read(ROD).lens_report()
+
+
 def test_curves(program):
     scene = cuvette.read(ROD)
     curve = scene.curve("fresnel-s")

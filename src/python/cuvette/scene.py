@@ -1,11 +1,13 @@
 """Scenes: parameters by name, objects, rendering."""
 
+import math
 import os
 import re
 from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from . import progress as bars
 from ._documents import PARAMETERS
@@ -24,6 +26,7 @@ from ._library import (
     new_handle,
     names_of,
     on_curve,
+    on_lens_number,
     on_metric,
     on_parameter,
     on_progress,
@@ -378,6 +381,28 @@ class Scene(Tracer):
 
         visit_each(lib.cuvette_scene_each_metric, on_metric, add, self.load()._scene)
         return found
+
+    @described("cuvette_scene_each_lens_number")
+    def lens_report(self, system: Optional[str] = None) -> Dict[str, Dict[str, NDArray[numpy.float64]]]:
+        """What `cuvette lens report` prints: the columns of each section as arrays, with a value for each record. The
+        keys of records, `surface`, `field`, `lambda_nm` and `x`, are columns too, NaN where a record has none."""
+        records: Dict[str, Dict[Tuple[float, ...], Dict[str, float]]] = {}
+
+        def add(one: Any) -> None:
+            key = (one.surface or math.nan, one.field or math.nan, one.lambda_nm, one.x)
+            found = records.setdefault(text_of(one.section), {}).setdefault(tuple(map(repr, key)), {})
+            found.update(zip(("surface", "field", "lambda_nm", "x"), key))
+            found[text_of(one.quantity)] = one.value
+
+        named = NULL if system is None else system.encode()
+        visit_each(lib.cuvette_scene_each_lens_number, on_lens_number, add, self.load()._scene, named)
+        return {
+            section: {
+                name: numpy.array([one.get(name, math.nan) for one in found.values()])
+                for name in dict.fromkeys(name for one in found.values() for name in one)
+            }
+            for section, found in records.items()
+        }
 
     @property
     def curves(self) -> Tuple[str, ...]:
