@@ -84,6 +84,7 @@ code_flags = -std=gnu17 -D_GNU_SOURCE $(linkage) $(arithmetic) $(optimize) $(CFL
 all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings) $(errors)
 all_libs = $(pkg_libs) -lm -pthread
+program_libs = -lnlopt $(all_libs)
 
 # Embree 3, which one of the peers links if it is installed. Detected at its first use, as above.
 embree = $(eval embree := $$(shell \
@@ -103,7 +104,10 @@ endef
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% src/manual/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% src/wasm/% src/manual/% src/study/fit/% $(kernels),\
+  $(sources))
+# `cuvette fit`, which needs NLopt: only for the program.
+fit := $(wildcard src/study/fit/*.c)
 program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
@@ -113,7 +117,7 @@ importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c n
 objects_of = $(1:src/%.c=$(build)/obj/%.o)
 include mk/arch.mk
 library_objects := $(call objects_of,$(library)) $(kernel_objects)
-program_objects := $(call objects_of,$(program))
+program_objects := $(call objects_of,$(program) $(fit))
 mpi_objects := $(call objects_of,$(mpi))
 web_objects := $(call objects_of,$(web)) $(build)/web/page_files.o
 importer_objects := $(importer:src/%.c=$(build)/plain/%.o)
@@ -127,7 +131,7 @@ all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/man/ma
 
 $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(program_libs)
 
 # The laboratory's server and its page: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
@@ -145,7 +149,8 @@ mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE) 2>/dev/n
 .PHONY: mpi mpi-tools
 ## mpi: build/cuvette-mpi, for the ranks of an MPI job
 mpi: $(build)/cuvette-mpi $(build)/cuvette-import
-$(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o,$(program_objects)) $(build)/libweb.a \
+$(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o %/cli/fit.o $(call objects_of,$(fit)), \
+  $(program_objects)) $(build)/libweb.a \
   $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(mpi_libs) $(all_libs)

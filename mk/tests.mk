@@ -19,7 +19,7 @@ fuzzers := $(patsubst tests/fuzz/%.c,$(build)/tests/fuzz_%,$(wildcard tests/fuzz
 # visible. Linked to archives each has a copy of the engine: gigabytes, and minutes of linking after each change. When
 # only the library changes, no program is linked anew; when this file changes, all are.
 tested_library := $(build)/tests/libtested.so
-tested_objects := $(library_objects) $(web_objects) $(mpi_pure)
+tested_objects := $(library_objects) $(web_objects) $(mpi_pure) $(call objects_of,$(fit))
 # It runs on this machine, also where CC compiles for another.
 HOSTCC ?= $(if $(findstring --sysroot,$(CC)),gcc,$(CC))
 $(build)/tests/visible: tests/tools/visible.c $(build)/flags
@@ -29,7 +29,7 @@ $(tested_library): $(tested_objects) $(build)/tests/visible
 	$(call say,link $@)
 	$(quiet)$(CC) -r -nostdlib -o $(@:.so=.o) $(tested_objects) && $(build)/tests/visible $(@:.so=.o)
 	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(@F) -Wl,-Bsymbolic $(no_undefined) -o $@ $(@:.so=.o) $(LDFLAGS) \
-	  $(all_libs)
+	  $(program_libs)
 	@rm $(@:.so=.o)
 
 # Test programs do little work of their own: with -O3 gcc takes twice as long for them. Their functions are visible, so
@@ -44,7 +44,7 @@ $(build)/tests/test_%: test_%.c mk/tests.mk $(build)/flags | $(tested_library)
 # Readers in programs, for fuzzers; their parsing of a command line does not run the command (tests/fuzz/arguments.c).
 fuzzed_objects := $(filter-out %/cli/main.o,$(program_objects)) \
   $(call objects_of,$(filter-out %/main.c,$(wildcard src/import/*.c)))
-fuzzed_libs = $(build)/libfuzzed.a $(build)/libweb.a $(build)/libcuvette.a $(LDFLAGS) $(all_libs) $(import_libs) \
+fuzzed_libs = $(build)/libfuzzed.a $(build)/libweb.a $(build)/libcuvette.a $(LDFLAGS) $(program_libs) $(import_libs) \
   -lcmocka
 parse_only := -Wl,--wrap=command_form_read
 $(build)/libfuzzed.a: $(fuzzed_objects)

@@ -25,6 +25,7 @@ status command_media(int argc, char **argv, diagnostic *why);
 status command_lens(int argc, char **argv, diagnostic *why);
 status command_mesh(int argc, char **argv, diagnostic *why);
 status command_study(int argc, char **argv, diagnostic *why);
+status command_fit(int argc, char **argv, diagnostic *why);
 status command_compare(int argc, char **argv, diagnostic *why);
 status command_realism(int argc, char **argv, diagnostic *why);
 status command_motion(int argc, char **argv, diagnostic *why);

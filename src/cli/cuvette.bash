@@ -78,7 +78,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         lens) _cuvette_files 'yaml|yml|zmx|dat|csv' ;;
-        scene) _cuvette_files 'yaml|yml' ;;
+        scene | fit) _cuvette_files 'yaml|yml' ;;
         mesh) _cuvette_files 'obj|ply|glb' ;;
         study)
             case ${COMP_WORDS[2]-} in
@@ -153,7 +153,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify summary compare films power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media lens mesh study compare realism motion lesson lab machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media lens mesh study fit compare realism motion lesson lab machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -230,6 +230,13 @@ _cuvette()
             _cuvette_study "${COMP_WORDS[2]}"
         fi
         ;;
+    fit)
+        if [[ $current == -* ]]; then
+            _cuvette_words --results --output --json --quiet --memory-limit --help --usage --version
+        else
+            _cuvette_files 'study'
+        fi
+        ;;
     compare)
         if [[ $current == -* ]]; then
             _cuvette_words --diff --json --memory-limit --help --usage --version
@@ -270,7 +277,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media lens mesh study compare realism motion lesson lab machine
+            _cuvette_words render animate scene trace fan params media lens mesh study fit compare realism motion lesson lab machine
         fi
         ;;
     esac

@@ -25,6 +25,7 @@ static const command commands[] = {
     {"lens", "read a lens prescription; write it as a scene or a lens file", command_lens},
     {"mesh", "describe, generate or convert a triangle mesh", command_mesh},
     {"study", "run and summarise studies (parameter sweeps)", command_study},
+    {"fit", "choose parameters so that measured quantities meet targets", command_fit},
     {"compare", "compare two images", command_compare},
     {"realism", "compare the optics of a scene, as traced, with textbook formulas", command_realism},
     {"motion", "compare the motion of slimes (soft bodies) with mechanics", command_motion},

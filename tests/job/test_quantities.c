@@ -6,6 +6,7 @@
 #include "job/job.h"
 #include "report/report.h"
 #include "scene/model/scene.h"
+#include "study/fit/fit.h"
 #include "study/rows/compare_rows.h"
 #include "study/rows/rows.h"
 #include "study_fixture.h"
@@ -232,7 +233,8 @@ static void the_dictionary_equals_the_list(void **state)
         row_columns *each;
     } tables[] = {{"\n## rows.csv", row_each_column},
                   {"\n## workers.csv", worker_each_column},
-                  {"\n## compare.csv", compare_each_column}};
+                  {"\n## compare.csv", compare_each_column},
+                  {"\n## fit.csv", fit_each_column}};
     for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
         char *text = NULL;
         size_t size;

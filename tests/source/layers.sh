@@ -14,7 +14,7 @@ folder_order='
 geometry  mesh hierarchy . primitives shapes regions
 render    plan photons tracer shade camera zbuffer integrators caustics frame inspect
 scene     model lens file assets motion package
-study     . plan rows run summary plot
+study     . plan rows fit run summary plot
 wasm      . api
 web       http document live session api .
 '

@@ -84,8 +84,7 @@ status grid_find_films(study_axis *axis, const scene *s, diagnostic *why)
     return code;
 }
 
-/* Applies the settings of a point, in order. */
-static status set_point(scene *to, const study_point *point, diagnostic *why)
+status study_point_apply(const study_point *point, scene *to, diagnostic *why)
 {
     for (size_t i = 0; i < point->count; i++)
         TRY(scene_set(to, point->paths[i], point->values[i], why));
@@ -116,7 +115,7 @@ status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *wh
         return out_of_memory(why);
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
-        status code = set_point(setting, point, why);
+        status code = study_point_apply(point, setting, why);
         if (code != STATUS_OK) {
             diagnostic_locate(why, s->path, point->line, point->column);
             scene_destroy(setting);
@@ -186,7 +185,7 @@ status grid_check_cells(const study *s, diagnostic *why)
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why)
 {
     status code = study_cell_scene(s, cell, out, why);
-    if (code == STATUS_OK && (code = set_point(*out, &s->reference, why)) != STATUS_OK) {
+    if (code == STATUS_OK && (code = study_point_apply(&s->reference, *out, why)) != STATUS_OK) {
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
         scene_destroy(*out);
         *out = NULL;

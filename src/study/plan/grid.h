@@ -5,6 +5,10 @@
 #include "scene/file/document.h"
 #include "study/study.h"
 
+/* Reads a study that is a fit (study/fit/fit.h): it has a section `fit`, and no grid, repetitions or kept files. *d: its
+ * document, which the caller destroys. study_read refuses such a study. */
+status study_read_fit(const char *path, study **out, document **d, diagnostic *why);
+
 /* The largest number of pixels of a frame in the quick form of a study. */
 enum { QUICK_PIXELS = 80 * 60 };
 
@@ -18,6 +22,9 @@ status grid_check_cells(const study *s, diagnostic *why);
 
 /* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
 status grid_find_films(study_axis *axis, const scene *s, diagnostic *why);
+
+/* Applies the settings of a point, in order. */
+status study_point_apply(const study_point *point, scene *to, diagnostic *why);
 
 /* The scene of the cell's reference; image files are not loaded. */
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why);
@@ -53,6 +60,11 @@ void order_shuffle(uint64_t seed, uint64_t stream, size_t *order, size_t count);
 /* Validates every path and value on s->base, applies the fixed ones to it, and fills s->fixed and s->axes. set and grid
  * may be NULL. */
 status read_grid(study *s, const document *d, const node *set, const node *grid, diagnostic *why);
+
+/* Reads each entry of a map {path: value} into an empty point, and applies it to target. The caller releases the point,
+ * also after an error. */
+status read_point(study_point *point, scene *target, const document *d, const node *map, diagnostic *why);
+void study_point_release(study_point *point);
 
 /* Validates the reference's paths and values on a copy of s->base, and fills s->reference. reference may be NULL. */
 status read_reference(study *s, const document *d, const node *reference, diagnostic *why);

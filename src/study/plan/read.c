@@ -291,10 +291,12 @@ static status check_loads(void *context, const study *s, size_t cell, scene *set
     return code;
 }
 
-static status read_root(study *s, const document *d, const study_guard *guard, diagnostic *why)
+/* fitted: the study must have a section `fit`, which study/fit reads; else it must not. */
+static status read_root(study *s, const document *d, const study_guard *guard, bool fitted, diagnostic *why)
 {
     static const char *const keys[] = {"study",       "title",     "scene",     "set",     "grid",  "reference",
                                        "repetitions", "processes", "disturbed", "warmups", "order", "keep"};
+    static const char *const fit_keys[] = {"study", "title", "scene", "set", "fit"};
     static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
                                                                         keep_check_tables};
     const node *root = document_root(d);
@@ -304,7 +306,12 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
         diagnostic_locate(why, s->path, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "begin with study: NAME and scene: FILE", "the study is empty");
     }
-    TRY(node_check_keys(d, root, keys, COUNT(keys), why));
+    if (fitted && !node_get(root, "fit"))
+        return node_error(d, root, why, "add it, see cuvette-study(5); run other studies with 'cuvette study run'",
+                          "the study has no section fit");
+    if (!fitted && node_get(root, "fit"))
+        return node_error(d, node_get(root, "fit"), why, "run it with 'cuvette fit'", "this study is a fit");
+    TRY(node_check_keys(d, root, fitted ? fit_keys : keys, fitted ? COUNT(fit_keys) : COUNT(keys), why));
     TRY(read_names(s, d, root, why));
     TRY(read_repetitions(s, d, node_get(root, "repetitions"), why));
     TRY(read_noise_rule(s, d, node_get(root, "disturbed"), why));
@@ -324,7 +331,7 @@ static status read_root(study *s, const document *d, const study_guard *guard, d
     return identities_find(s, &s->identity, why);
 }
 
-static void point_free(study_point *point)
+void study_point_release(study_point *point)
 {
     for (size_t i = 0; i < point->count; i++) {
         free(point->paths[i]);
@@ -341,13 +348,13 @@ void study_destroy(study *s)
         return;
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         for (size_t i = 0; i < s->axes[axis].count; i++)
-            point_free(&s->axes[axis].points[i]);
+            study_point_release(&s->axes[axis].points[i]);
         free(s->axes[axis].points);
         free(s->axes[axis].name);
     }
     free(s->axes);
-    point_free(&s->fixed);
-    point_free(&s->reference);
+    study_point_release(&s->fixed);
+    study_point_release(&s->reference);
     free(s->path);
     free(s->name);
     free(s->title);
@@ -360,8 +367,9 @@ void study_destroy(study *s)
     free(s);
 }
 
-static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
-                        diagnostic *why)
+/* fit: receives the document of a study with a section `fit`; NULL for other studies. */
+static status read_text(const char *name, const char *text, size_t size, const study_guard *guard, document **fit,
+                        study **out, diagnostic *why)
 {
     *out = NULL;
     study *s = calloc(1, sizeof *s);
@@ -369,8 +377,11 @@ static status read_text(const char *name, const char *text, size_t size, const s
     status code = s && (s->path = strdup(name)) && (s->text = strndup(text, size))
                       ? document_parse(name, text, size, &d, why)
                       : out_of_memory(why);
-    THEN(code, read_root(s, d, guard, why));
-    document_destroy(d);
+    THEN(code, read_root(s, d, guard, fit != NULL, why));
+    if (fit && code == STATUS_OK)
+        *fit = d;
+    else
+        document_destroy(d);
     if (code == STATUS_OK)
         *out = s;
     else
@@ -380,16 +391,16 @@ static status read_text(const char *name, const char *text, size_t size, const s
 
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why)
 {
-    return read_text(name, text, size, NULL, out, why);
+    return read_text(name, text, size, NULL, NULL, out, why);
 }
 
 status study_read_text_guarded(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
                                diagnostic *why)
 {
-    return read_text(name, text, size, guard, out, why);
+    return read_text(name, text, size, guard, NULL, out, why);
 }
 
-status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why)
+static status read_file(const char *path, const study_guard *guard, document **fit, study **out, diagnostic *why)
 {
     char *text;
     size_t size;
@@ -400,9 +411,20 @@ status study_read_guarded(const char *path, const study_guard *guard, study **ou
             installed_suggest(path, "experiments", ".study", why);
         return code;
     }
-    code = read_text(path, text, size, guard, out, why);
+    code = read_text(path, text, size, guard, fit, out, why);
     free(text);
     return code;
+}
+
+status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why)
+{
+    return read_file(path, guard, NULL, out, why);
+}
+
+status study_read_fit(const char *path, study **out, document **d, diagnostic *why)
+{
+    *d = NULL;
+    return read_file(path, NULL, d, out, why);
 }
 
 status study_read(const char *path, study **out, diagnostic *why)

@@ -76,8 +76,7 @@ static status point_add(study_point *point, scene *target, const document *d, co
     return point->paths[point->count++] ? STATUS_OK : out_of_memory(why);
 }
 
-/* Reads each entry of a map {path: value}. */
-static status read_point(study_point *point, scene *target, const document *d, const node *map, diagnostic *why)
+status read_point(study_point *point, scene *target, const document *d, const node *map, diagnostic *why)
 {
     if (map->kind != NODE_MAP || map->count == 0)
         return node_error(d, map, why, "write {path: value}", "this sets no parameter");
