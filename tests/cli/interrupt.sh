@@ -49,6 +49,7 @@ w_trace() {
     files=tree.json longest=2
 }
 w_motion() { line=(motion "$scenes/slime.yaml" --set toy.level=5 --set toy.dt_s=1e-4) longest=2; }
+w_fit() { line=(fit "$root/experiments/fits/index_of_water.study") kept=results/index_of_water/fit.csv longest=2; }
 w_lesson() { line=(lesson check) longest=1; }
 w_check() { line=(scene soup-bvh.yaml --check) longest=2 && soup sparse 3000000 bvh; }
 w_octant() { line=(render soup-octant.yaml -o s.png) files=s.png longest=2 && soup sparse 2000000 octant; }

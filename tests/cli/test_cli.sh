@@ -60,10 +60,10 @@ check "--version names the version and the build" matches "$(<out)" \
     '^cuvette [0-9]+\.[0-9]+\.[0-9]+ \(build [0-9a-f]{16}(, commit [0-9a-f]+\+?)?\)$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render animate scene trace fan params media mesh study compare realism motion lab machine help; do
+for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
+for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine "study run" \
     "study new" "study list" "study status" "study merge" "study verify" \
     "study summary" "study exclude" "study compare" "study power" "study plot" "study submit"; do
     # shellcheck disable=SC2086
@@ -1226,7 +1226,7 @@ check "completion without a scene offers no groups of objects" is \
 check "completion of a figure's file" is "$(complete_line "$program" study plot -o figure)" figure.svg
 rm figure.svg
 offered=
-for verb in render animate scene trace fan params media mesh compare realism motion lab machine \
+for verb in render animate scene trace fan params media mesh fit compare realism motion lab machine \
     "study "{new,run,submit,status,list,merge,verify,summary,compare,films,power,exclude,plot}; do
     # shellcheck disable=SC2086
     offered+=$(comm -13 <(complete_line "$program" $verb -- | sort) \

@@ -74,6 +74,14 @@ cuvette render rod.yaml -o b.png --set liquid.ior=1.4
 cuvette render rod.yaml -o a.jpg
 cuvette render rod.yaml -o a.pfm
 cuvette render rod.yaml -o a.exr
+cat >fit.study <<'END'
+study: fit
+scene: rod.yaml
+fit:
+  parameters: {liquid.ior: {from: 1.2, to: 1.6}, vessel.ior: {from: 1.4, to: 1.6}}
+  targets: {radiance: {value: 0.4, sigma: 0.1}, hits.rod: {set: {rod.position.x: 0.3}, value: 20}}
+  evaluations: 6
+END
 cat >small.study <<'END'
 study: small
 scene: rod.yaml

@@ -4,7 +4,7 @@
  * sensitivities, intervals and tolerances at the best one, report.c writes them.
  *
  * Everything is a function of the study file, the scene and the build: the same rows in the same order, for any number
- * of threads. A fit that is run again asks for the same points; those with a row are not measured again, so that a
+ * of threads. A fit that is run again requests the same points; those with a row are not measured again, so that a
  * killed fit goes on where it stopped. Ownership: fit_destroy releases a fit, fit_run_end a run. Errors of the section
  * are located in the study file. Only the program links this folder and NLopt; the library does not. */
 #pragma once
@@ -144,7 +144,7 @@ void fit_run_end(fit_run *r);
  * STATUS_INTERRUPTED without a row. *out is valid until the next call. reason: why it is not measurable; may be NULL. */
 status fit_evaluate(fit_run *r, const char *stage, const double *x, const fit_evaluation **out, diagnostic *reason,
                     diagnostic *why);
-size_t fit_run_evaluations(const fit_run *r); /* different points that this run has asked for */
+size_t fit_run_evaluations(const fit_run *r); /* different points that this run has requested */
 size_t fit_run_new(const fit_run *r);         /* those that it measured */
 size_t fit_run_set_aside(const fit_run *r);   /* rows of other builds, scenes or quantities, or edited, not used */
 const fit *fit_run_of(const fit_run *r);

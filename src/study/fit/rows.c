@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An evaluation, and whether this run has asked for it. */
+/* An evaluation, and whether this run has requested it. */
 typedef struct known {
     fit_evaluation at;
     bool asked;
@@ -38,7 +38,7 @@ static const row_column leading[] = {
     {"study", "", "name of the study"},
     {"fit", "", "hash of what is measured: the scene, its files, the parameters and the quantities, 16 hex digits"},
     {"evaluation", "", "running number of the row, from 1"},
-    {"stage", "", "what asked for it: start, a method of the search, derivative or tolerance"},
+    {"stage", "", "what requested it: start, a method of the search, derivative or tolerance"},
 };
 static const row_column trailing[] = {
     {"merit", "",

@@ -1,7 +1,7 @@
 /* The search for the best parameters, by the algorithms of NLopt (Johnson, The NLopt nonlinear-optimization package):
  * Nelder and Mead, Comput. J. 7 (1965); Rowan's subplex (1990); Powell's BOBYQA (2009) and COBYLA (1994); DIRECT of
  * Jones, Perttunen and Stuckman, J. Optim. Theory Appl. 79 (1993); controlled random search of Kaelo and Ali (2006).
- * None needs derivatives. All work on parameters as fractions of their ranges. NLopt asks for the same points whenever
+ * None needs derivatives. All work on parameters as fractions of their ranges. NLopt requests the same points whenever
  * it gets the same values, so that a search that is repeated with the rows of an earlier one goes on where it ended. */
 #include "base/cancel.h"
 #include "base/elementary.h"

@@ -1,0 +1,100 @@
+#!/bin/bash
+# `cuvette fit` as a person runs it: the report, JSON, the fitted scene, notes and errors; the same rows twice and for
+# any number of threads; and a fit that is killed or interrupted goes on to the rows of an unbroken one. CUVETTE names the
+# program.
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+program=$(realpath "${CUVETTE:-$root/build/cuvette}")
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-fit.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+export LC_ALL=C
+unset CUVETTE_ISA
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
+
+fit() { # ARGUMENT...: its output in out and err, its exit status in code
+    "$program" fit "$@" >out 2>err </dev/null
+    code=$?
+}
+
+# --- the best form of a lens
+fits=$root/experiments/fits
+fit "$fits/least_spot.study" -o best.yaml
+equal 'a fit ends well and in silence' "$code $(<err)" '0 '
+grep -qE '^shape +0\.71[0-9]+ ' out
+verdict $? 'the report has the shape of least spot' "$(<out)"
+"$program" scene best.yaml --check >out 2>&1
+verdict $? 'the fitted scene is valid' "$(<out)"
+grep -qE 'radius_1: 58\.[0-9]+' best.yaml
+verdict $? 'the fitted scene has the radius of that shape' "$(<best.yaml)"
+before=$(<results/least_spot/fit.csv)
+fit "$fits/least_spot.study" --json
+equal 'nothing is measured again' "$before" "$(<results/least_spot/fit.csv)"
+equal 'the JSON is an object with a value' "$(python3 -c '
+import json, sys
+r = json.load(open("out"))
+print(r["schema"], r["goal"], round(r["parameters"][0]["value"], 2), r["interval"], r["targets"][0]["quantity"])')" \
+    '1 minimise 0.71 none focus_rms'
+fit "$fits/least_spot.study" --quiet
+equal '--quiet prints nothing' "$code$(<out)$(<err)" 0
+
+# --- mistakes
+fit
+grep -q '^cuvette: fit: no study is given; give a study file' err
+verdict $? 'fit needs a study' "$(<err)"
+fit "$root/experiments/depth.study"
+grep -q 'depth.study:[0-9]*:1: the study has no section fit; ' err && ((code == 2))
+verdict $? 'a study without a fit is refused' "$(<err)"
+"$program" study run "$fits/achromat.study" >out 2>err
+equal 'study run refuses a fit' "$? $(sed 's/.*: this/this/' err)" "2 this study is a fit; run it with 'cuvette fit'"
+
+# --- the same rows, whatever happens; frames of a tenth of a second
+cat >slow.study <<END
+study: slow
+scene: $root/experiments/scenes/rod.yaml
+set: {render.width: 320, render.height: 240, render.threads: THREADS}
+fit:
+  parameters: {liquid.ior: {from: 1.2, to: 1.6, start: 1.5}, camera.fov_deg: {from: 30, to: 60}}
+  targets: {radiance: {value: 0.4}, rays_total: {value: 300000, weight: 1e-10}}
+  evaluations: 25
+END
+sed s/THREADS/1/ slow.study >one.study
+sed s/THREADS/3/ slow.study >three.study
+fit one.study --results one --quiet
+verdict "$code" 'a fit of frames ends well' "$(<err)"
+fit three.study --results three --quiet
+cmp -s one/slow/fit.csv three/slow/fit.csv
+verdict $? 'the rows are the same for any number of threads'
+rows() { # FOLDER: its complete rows
+    [[ -e $1/slow/fit.csv ]] && grep -c '' "$1/slow/fit.csv" || echo 0
+}
+for signal in KILL INT TERM KILL; do
+    "$program" fit one.study --results broken >out 2>err </dev/null &
+    pid=$!
+    had=$(rows broken)
+    while (($(rows broken) < had + 4)) && kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+    kill -s "$signal" "$pid" 2>/dev/null
+    wait "$pid" 2>/dev/null
+    code=$?
+    if [[ $signal != KILL ]] && ((code != 0)); then
+        [[ $code == 130 && $(<err) == *'interrupted; its '*' new rows are kept; run it again to resume' ]]
+        verdict $? "a fit that is interrupted says so, with exit status 130" "$code $(<err)"
+    fi
+    cmp -s -n "$(stat -c %s broken/slow/fit.csv)" broken/slow/fit.csv one/slow/fit.csv
+    verdict $? "after $signal the rows are the first ones of the unbroken fit" "$(diff broken/slow/fit.csv one/slow/fit.csv)"
+done
+fit one.study --results broken --quiet
+cmp -s broken/slow/fit.csv one/slow/fit.csv
+verdict $? 'the broken fit has gone on to the rows of the unbroken one' "$(<err)"
+sed -i 's/start: 1.5/start: 1.4/' one.study
+fit one.study --results broken --json
+((code == 0)) && [[ ! -s err ]]
+verdict $? 'another start uses rows of the same scene, without a note' "$(<err)"
+sed -i 's/render.height: 240/render.height: 160/' one.study
+fit one.study --results broken --json
+grep -q '^cuvette: note: slow: [0-9]* rows of broken/slow/fit.csv are of another scene' err
+verdict $? 'rows of another scene are noted' "$(<err)"
+
+conclude
