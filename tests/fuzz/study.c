@@ -1,9 +1,29 @@
 /* The libFuzzer entry for the study reader: any bytes give a study or one located error; an accepted study provides the
- * scene of every cell. The scenes that it may name are those of experiments/scenes. `make fuzz` builds and runs it;
+ * scene of every cell, an accepted fit that of its start. The scenes that it may name are those of experiments/scenes. `make fuzz` builds and runs it;
  * seeds are experiments/ and tests/bad/studies/. */
 #include "study/study.h"
+#include "study/fit/fit.h"
 
 #include "fuzz.h"
+
+static void read_fit(const uint8_t *data, size_t size)
+{
+    double x[FIT_PARAMETERS_MAX];
+    diagnostic why = {0};
+    fit *f = NULL;
+    const status code = fit_read_text("experiments/fuzz.study", (const char *)data, size, &f, &why);
+    if (code == STATUS_OK) {
+        scene *start = NULL;
+        for (size_t i = 0; i < f->parameter_count; i++)
+            x[i] = f->parameters[i].start;
+        if (fit_scene(f, x, 0, &start, NULL) != STATUS_OK && start)
+            __builtin_trap();
+        scene_destroy(start);
+    } else if (f || !why.what[0] || (code == STATUS_BAD_INPUT && !why.file[0])) {
+        __builtin_trap();
+    }
+    fit_destroy(f);
+}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -23,5 +43,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         __builtin_trap();
     }
     study_destroy(s);
+    read_fit(data, size);
     return 0;
 }

@@ -112,6 +112,8 @@ typedef struct fit {
 
 /* Reads a study with a section `fit`, and tries its parameters and quantities on the scene. */
 status fit_read(const char *path, fit **out, diagnostic *why);
+/* Reads it from memory; name is used in diagnostics, and the scene's path is relative to its folder. */
+status fit_read_text(const char *name, const char *text, size_t size, fit **out, diagnostic *why);
 void fit_destroy(fit *f);
 
 /* --- measuring: measure.c --- */

@@ -263,9 +263,9 @@ static void hash_measure(uint64_t *hash, const fit *f, const fit_measure *m)
 static status find_identity(fit *f, diagnostic *why)
 {
     uint64_t hash = 0;
-    if (reference_scene_hash(f->s->base, &hash) != STATUS_OK)
+    if (reference_scene_hash(f->s->base, &hash) != STATUS_OK ||
+        scene_each_param(f->s->base, hash_beam, &hash) != STATUS_OK)
         return out_of_memory(why);
-    TRY(scene_each_param(f->s->base, hash_beam, &hash));
     for (size_t i = 0; i < f->parameter_count; i++) {
         const fit_parameter *p = &f->parameters[i];
         hash_text(&hash, p->name);
@@ -314,14 +314,15 @@ void fit_destroy(fit *f)
     free(f);
 }
 
-status fit_read(const char *path, fit **out, diagnostic *why)
+/* text: NULL to read the file `name`. */
+static status read_fit(const char *name, const char *text, size_t size, fit **out, diagnostic *why)
 {
     document *d = NULL;
     *out = NULL;
     fit *f = calloc(1, sizeof *f);
     if (!f)
         return out_of_memory(why);
-    status code = study_read_fit(path, &f->s, &d, why);
+    status code = text ? study_read_fit_text(name, text, size, &f->s, &d, why) : study_read_fit(name, &f->s, &d, why);
     if (code == STATUS_OK) {
         fit_reading r = {.f = f, .d = d, .at = {NAN, NAN, NAN}, .why = why};
         code = read_section(&r, node_get(document_root(d), "fit"));
@@ -333,4 +334,14 @@ status fit_read(const char *path, fit **out, diagnostic *why)
     else
         fit_destroy(f);
     return code;
+}
+
+status fit_read(const char *path, fit **out, diagnostic *why)
+{
+    return read_fit(path, NULL, 0, out, why);
+}
+
+status fit_read_text(const char *name, const char *text, size_t size, fit **out, diagnostic *why)
+{
+    return read_fit(name, text, size, out, why);
 }

@@ -8,6 +8,7 @@
 /* Reads a study that is a fit (study/fit/fit.h): it has a section `fit`, and no grid, repetitions or kept files. *d: its
  * document, which the caller destroys. study_read refuses such a study. */
 status study_read_fit(const char *path, study **out, document **d, diagnostic *why);
+status study_read_fit_text(const char *name, const char *text, size_t size, study **out, document **d, diagnostic *why);
 
 /* The largest number of pixels of a frame in the quick form of a study. */
 enum { QUICK_PIXELS = 80 * 60 };

@@ -427,6 +427,12 @@ status study_read_fit(const char *path, study **out, document **d, diagnostic *w
     return read_file(path, NULL, d, out, why);
 }
 
+status study_read_fit_text(const char *name, const char *text, size_t size, study **out, document **d, diagnostic *why)
+{
+    *d = NULL;
+    return read_text(name, text, size, NULL, d, out, why);
+}
+
 status study_read(const char *path, study **out, diagnostic *why)
 {
     return study_read_guarded(path, NULL, out, why);
