@@ -55,7 +55,7 @@ $$(build)/variants/$(1)/%.o: src/%.c $$(build)/flags
 	$$(quiet)$(2) $$(call variant_cflags,off) $(4) -DCUVETTE_BUILD_ID='"$(1)"' -c -o $$@ $$<
 $$(build)/variants/$(1)/cuvette: $$(program_objects) $$(build)/libweb.a $$(variant_objects_$(1)) $$(build)/libcuvette.a
 	$$(call say,link $$@)
-	$$(quiet)$$(CC) $$(all_cflags) -o $$@ $$^ $$(LDFLAGS) $$(all_libs)
+	$$(quiet)$$(CC) $$(all_cflags) -o $$@ $$^ $$(LDFLAGS) $$(program_libs)
 -include $$(variant_objects_$(1):.o=.d)
 endef
 # $(1): its name; $(2): compiler; $(3): instruction set; $(4): contract; $(5): flags of the film

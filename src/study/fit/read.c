@@ -76,15 +76,18 @@ static status read_drives(const fit_reading *r, fit_parameter *p, const node *na
 }
 
 /* The scene's value if the parameter sets one path directly, and it is between the bounds; else the middle. */
-static double start_of(const fit *f, const fit_parameter *p)
+static status find_start(const fit *f, fit_parameter *p, diagnostic *why)
 {
-    char *text = NULL;
     double value = NAN;
     const bool direct = p->drive_count == 1 && p->drives[0].offset == 0.0 && p->drives[0].factor == 1.0;
-    if (direct && !p->reciprocal && scene_get(f->s->base, p->drives[0].path, &text, NULL) == STATUS_OK)
+    if (direct && !p->reciprocal) {
+        char *text = NULL;
+        TRY(scene_get(f->s->base, p->drives[0].path, &text, why));
         number_parse_real(text, &value);
-    free(text);
-    return value >= p->from && value <= p->to ? value : 0.5 * (p->from + p->to);
+        free(text);
+    }
+    p->start = value >= p->from && value <= p->to ? value : 0.5 * (p->from + p->to);
+    return STATUS_OK;
 }
 
 /* Both ends of its range must be allowed values. */
@@ -130,7 +133,7 @@ static status read_parameter(const fit_reading *r, const node *name, const node 
     else if (reciprocal && (reciprocal->kind != NODE_SCALAR || strcmp(reciprocal->text, "off") != 0))
         return WRONG(r, reciprocal, "write on or off", "reciprocal is neither on nor off");
     TRY(read_drives(r, p, name, node_get(map, "sets")));
-    p->start = start_of(f, p);
+    TRY(find_start(f, p, r->why));
     TRY(fit_read_real(r, map, "start", p->from, p->to, &p->start));
     return check_ends(r, index, map);
 }

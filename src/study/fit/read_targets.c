@@ -140,7 +140,7 @@ static status read_beams(const fit_reading *r, const node *map, fit_measure *m)
         if (!(vec3_length(m->normal) > 0.0))
             m->normal = beam_axis(&s->beams[i]);
         for (int k = 0; k < beam_wavelengths(&s->beams[i]); k++)
-            found = found || !m->lambda_nm || fabs(beam_lambda(&s->beams[i], k) - m->lambda_nm) < 1e-6;
+            found = found || m->lambda_nm == 0.0 || fabs(beam_lambda(&s->beams[i], k) - m->lambda_nm) < 1e-6;
     }
     if (!found)
         return WRONG(r, map, "add one: cuvette scene SCENE --add beam:laser, or give the wavelength of one",

@@ -131,11 +131,15 @@ static status run_stage(search *s, const char **ended)
     return s->code;
 }
 
-static status start_error(const fit *f, const diagnostic *reason, diagnostic *why)
+static status start_error(const fit *f, const fit_evaluation *e, const diagnostic *reason, diagnostic *why)
 {
+    size_t lacking = 0;
+    while (lacking + 1 < f->target_count && !isnan(e->values[lacking]))
+        lacking++;
     return diagnose_at(why, f->s->path, STATUS_BAD_INPUT,
-                       reason->remedy[0] ? reason->remedy : "choose another start for the parameters",
-                       "nothing can be measured at the start%s%.400s", reason->what[0] ? ": " : "", reason->what);
+                       reason->remedy[0] ? reason->remedy : "choose another start, at which rays reach the screen",
+                       "%.64s cannot be measured at the start%s%.400s", f->targets[lacking].name,
+                       reason->what[0] ? ": " : "", reason->what);
 }
 
 status fit_search(fit_run *r, fit_result *out, diagnostic *why)
@@ -148,7 +152,7 @@ status fit_search(fit_run *r, fit_result *out, diagnostic *why)
         x[i] = f->parameters[i].start;
     TRY(fit_evaluate(r, "start", x, &e, &reason, why));
     if (isnan(e->merit))
-        return start_error(f, &reason, why);
+        return start_error(f, e, &reason, why);
     search s = {.r = r, .f = f, .best = *e, .worst = e->merit, .why = why};
     for (size_t i = 0; i < f->stage_count; i++) {
         s.method = f->stages[i];
