@@ -184,8 +184,10 @@ static void print_text(const fit_run *run, const fit_result *r, const char *resu
     const fit *f = fit_run_of(run);
     printf("%s: %zu evaluations, %zu of them new rows of %s/%s/fit.csv\n", f->s->name, fit_run_evaluations(run),
            fit_run_new(run), results, f->s->name);
-    printf("%s %.6g; the search ended: %s\n",
-           f->goal == FIT_TARGETS ? "merit, sum of weighted squares:" : "merit:", r->best.merit, r->ended);
+    printf("merit%s: %.6g", f->goal == FIT_TARGETS ? ", sum of weighted squares" : "", r->best.merit);
+    if (f->goal == FIT_TARGETS && r->freedom > 0)
+        printf(" with %ld degree%s of freedom", r->freedom, r->freedom == 1 ? "" : "s");
+    printf("; the search ended: %s\n", r->ended);
     print_parameters(f, r);
     print_targets(f, r);
 }
@@ -202,6 +204,22 @@ static void note_rows(const fit_run *run, const char *results)
              "edited; they are kept and not used",
              fit_run_of(run)->s->name, fit_run_set_aside(run), results, fit_run_of(run)->s->name);
     terminal_note(text);
+}
+
+static void note_idle_parameters(const fit *f, const fit_result *r)
+{
+    char text[300];
+    for (size_t i = 0; i < f->parameter_count; i++) {
+        bool acts = false;
+        for (size_t k = 0; k < f->target_count; k++)
+            acts = acts || r->derivative[k][i] != 0.0;
+        snprintf(
+            text, sizeof text,
+            "%s: %.64s changes nothing that is measured near the best point: it has no effect, or step is too small",
+            f->s->name, f->parameters[i].name);
+        if (!acts)
+            terminal_note(text);
+    }
 }
 
 static status write_scene(const fit *f, const fit_result *r, const char *path, diagnostic *why)
@@ -228,6 +246,8 @@ static status search_and_report(const fit_request *request, fit_run *run, fit_pr
     progress_erase(&progress->line);
     if (code == STATUS_INTERRUPTED)
         code = report_interrupted(run, why);
+    if (code == STATUS_OK && !request->quiet)
+        note_idle_parameters(f, r);
     if (code == STATUS_OK && request->output)
         code = write_scene(f, r, request->output, why);
     if (code == STATUS_OK && request->json)

@@ -63,8 +63,8 @@ check "--help succeeds on standard output" silent_success
 for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine "study run" \
-    "study new" "study list" "study status" "study merge" "study verify" \
+for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine \
+    "study run" "study new" "study list" "study status" "study merge" "study verify" \
     "study summary" "study exclude" "study compare" "study power" "study plot" "study submit"; do
     # shellcheck disable=SC2086
     run help $command

@@ -1,6 +1,6 @@
 /* The libFuzzer entry for the study reader: any bytes give a study or one located error; an accepted study provides the
- * scene of every cell, an accepted fit that of its start. The scenes that it may name are those of experiments/scenes. `make fuzz` builds and runs it;
- * seeds are experiments/ and tests/bad/studies/. */
+ * scene of every cell, an accepted fit that of its start. The scenes that it may name are those of experiments/scenes.
+ * `make fuzz` builds and runs it; seeds are experiments/ and tests/bad/studies/. */
 #include "study/study.h"
 #include "study/fit/fit.h"
 

@@ -39,9 +39,9 @@ typedef enum fit_source {
     FIT_BEAMS     /* of the rays of beams */
 } fit_source;
 
-/* Quantities of the last segments of the beams' refracted paths, which `fan` follows too, at a screen: the plane through
- * `at` with the normal. Only rays that reach the screen, or leave the scene, count; rays have the weight of their power
- * at the start, since a spot diagram shows geometry, not losses. */
+/* Quantities of the last segments of the beams' refracted paths, which `fan` follows too, at a screen: the plane
+ * through `at` with the normal. Only rays that reach the screen, or leave the scene, count; rays have the weight of
+ * their power at the start, since a spot diagram shows geometry, not losses. */
 typedef enum fit_beam_quantity {
     FIT_FOCUS,        /* signed distance from the screen, along its normal, of the least rms radius */
     FIT_FOCUS_RMS,    /* that radius */
@@ -143,7 +143,7 @@ typedef struct fit_run fit_run;
 status fit_run_begin(const fit *f, const fit_options *options, fit_run **out, diagnostic *why);
 void fit_run_end(fit_run *r);
 /* The evaluation at x: of this run, of an earlier one's row, or a new one, whose row is on disk when this returns.
- * STATUS_INTERRUPTED without a row. *out is valid until the next call. reason: why it is not measurable; may be NULL. */
+ * STATUS_INTERRUPTED without a row. *out lives as long as the run. reason: why it is not measurable; may be NULL. */
 status fit_evaluate(fit_run *r, const char *stage, const double *x, const fit_evaluation **out, diagnostic *reason,
                     diagnostic *why);
 size_t fit_run_evaluations(const fit_run *r); /* different points that this run has requested */

@@ -42,8 +42,9 @@ static const row_column leading[] = {
 };
 static const row_column trailing[] = {
     {"merit", "",
-     "what the search makes least: the sum of weight (measured - value)^2, the quantity, or its negative; "
-     "NA where a quantity cannot be measured"},
+     "what the search makes least, by the targets when the row was written: the sum of weight (measured - value)^2, "
+     "the "
+     "quantity, or its negative; NA where a quantity cannot be measured"},
     {"build", "", "hash of the program's sources and compiler that can change a film, 16 hex digits"},
     {"checksum", "", "proves the row: 8 hex digits for its values, 8 for its place after the previous row"},
 };

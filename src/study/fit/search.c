@@ -23,8 +23,8 @@ typedef struct search {
     diagnostic *why;
 } search;
 
-/* Simplex methods do not see bounds: NLopt would clip their points there, and a simplex that has shrunk onto a bound does
- * not leave it. They get coordinates c of the fraction (1 - cos 180 c) / 2 instead, which fold at the bounds. */
+/* Simplex methods do not see bounds: NLopt would clip their points there, and a simplex that has shrunk onto a bound
+ * does not leave it. They get coordinates c of the fraction (1 - cos 180 c) / 2 instead, which fold at the bounds. */
 static bool is_folded(fit_method method)
 {
     return method == FIT_NELDER_MEAD || method == FIT_SBPLX;

@@ -5,8 +5,8 @@
 #include "scene/file/document.h"
 #include "study/study.h"
 
-/* Reads a study that is a fit (study/fit/fit.h): it has a section `fit`, and no grid, repetitions or kept files. *d: its
- * document, which the caller destroys. study_read refuses such a study. */
+/* Reads a study that is a fit (study/fit/fit.h): it has a section `fit`, and no grid, repetitions or kept files. *d:
+ * its document, which the caller destroys. study_read refuses such a study. */
 status study_read_fit(const char *path, study **out, document **d, diagnostic *why);
 status study_read_fit_text(const char *name, const char *text, size_t size, study **out, document **d, diagnostic *why);
 
