@@ -602,12 +602,13 @@ typedef struct cuvette_beam_ray {
     int32_t beam;         /* index of the beam in the scene */
     int32_t number, rays; /* the ray's number in its beam, from 0, and how many there are at each wavelength */
     double lambda_nm;
-    double power; /* at its start: the beam's power divided by its rays and wavelengths */
+    double power;  /* at its start: the beam's power divided by its rays, wavelengths and field points */
+    int32_t field; /* number of its field point, from 0 */
 } cuvette_beam_ray;
 
 /* Traces the rays of the scene's visible beams as `cuvette trace --beams` does: without shadow rays, each with the
- * depth and the wavelengths of its beam. visit owns the tree, and returns false to stop. CUVETTE_BAD_INPUT beyond a
- * million rays. */
+ * depth and the wavelengths of its beam. visit owns the tree, and returns false to stop. CUVETTE_BAD_INPUT for a
+ * tree of more than two million rays. */
 CUVETTE_API cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
                                                        bool (*visit)(void *context, const cuvette_beam_ray *ray,
                                                                      cuvette_tree *tree),

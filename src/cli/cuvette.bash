@@ -110,7 +110,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --bits) _cuvette_words 8 16 ;;
     --truth) _cuvette_words same larger smaller ;;
     --cells | --designs | --effect | --draws | --seed) COMPREPLY=() ;;
-    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
+    --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --min-weight | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
     --count | --level | --major | --minor | --around | --tube | --profile | --crease | --size | --weld) COMPREPLY=() ;;
     --port | --threads | --memory-limit | --layers | --process | --processes) COMPREPLY=() ;;
     -r | --results | --folder)
@@ -181,7 +181,7 @@ _cuvette()
         ;;
     trace)
         if [[ $current == -* ]]; then
-            _cuvette_words --pixel --ray --beams --depth --lambda --set --text --json --svg --output --memory-limit --help --usage --version
+            _cuvette_words --pixel --ray --beams --depth --lambda --min-weight --set --text --json --svg --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

@@ -59,6 +59,8 @@ static const command_option options[] = {
      OPTION_FILLS(option_flag, trace_request, beams)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
+    {"min-weight", 0, "W", "do not trace rays of less weight, and count them; sets render.min_weight",
+     .store = option_change, .parameter = "render.min_weight"},
     OPTION_SET("'liquid.ior=1.4'"),
     OPTION_MEMORY,
     {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .store = parse_format},
@@ -68,6 +70,22 @@ static const command_option options[] = {
     {0},
 };
 
+/* What acts on trees of pixels and free rays alone. */
+static status check_beam_options(const scene_input *input, diagnostic *why)
+{
+    static const struct {
+        const char *option, *parameter;
+    } own[] = {{"depth", "depth"}, {"lambda", "lambda_nm"}, {"min-weight", "min_fraction"}};
+    for (size_t i = 0; i < input->count; i++)
+        for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+            if (strcmp(input->changes[i].option, own[k].option) == 0) {
+                char remedy[64];
+                snprintf(remedy, sizeof remedy, "use --set BEAM.%s=VALUE", own[k].parameter);
+                return options_wrong("--beams", NULL, why, remedy, "--%s does not act on beams", own[k].option);
+            }
+    return STATUS_OK;
+}
+
 static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".txt", ".json", ".svg"};
@@ -76,6 +94,8 @@ static status check_request(void *context, diagnostic *why)
     if (given != 1)
         return options_wrong("trace", NULL, why, "give --pixel X,Y, --ray OX,OY,OZ,DX,DY,DZ or --beams",
                              given ? "--pixel, --ray and --beams exclude each other" : "no ray is given");
+    if (request->beams)
+        TRY(check_beam_options(&request->input, why));
     size_t which = FORMAT_TEXT;
     status result = STATUS_OK;
     if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)

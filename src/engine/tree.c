@@ -256,6 +256,7 @@ static status pass_ray(void *context, const beam_ray *ray, const ray_tree *from,
                                   .beam = ray->beam,
                                   .number = ray->number,
                                   .rays = ray->rays,
+                                  .field = ray->field,
                                   .lambda_nm = ray->lambda_nm,
                                   .power = ray->power};
     float_environment_leave(c->host);

@@ -83,11 +83,21 @@ static void write_text_rays(const traced *t, FILE *out)
     }
 }
 
+/* What was not traced: nothing vanishes in silence. */
+static void write_text_cut(FILE *out, const ray_cut *depth, const ray_cut *weight)
+{
+    fprintf(out, "cut by depth: %zu rays, weight %.6g; by least weight: %zu rays, weight %.6g\n", depth->rays,
+            depth->weight, weight->rays, weight->weight);
+}
+
 status trace_write_text(const traced *t, FILE *out, diagnostic *why)
 {
     const ray_tree *tree = t->tree;
     write_text_rays(t, out);
     TRY(cancel_check(why));
+    const ray_cut depth = ray_tree_cut(tree, RAY_END_CUT_DEPTH), weight = ray_tree_cut(tree, RAY_END_CUT_WEIGHT);
+    if (depth.rays + weight.rays > 0)
+        write_text_cut(out, &depth, &weight);
     fprintf(out, "radiance %.9g %.9g %.9g  rays %zu, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1],
             tree->radiance[2], tree->count, tree->depth_limit, tree->lambda_nm);
     return STATUS_OK;
@@ -160,6 +170,15 @@ static void write_snell(FILE *out, const ray_hit *h)
     write_number(out, "n_sin_i", h->n_from * sqrt(fmax(0.0, 1.0 - h->cos_i * h->cos_i)));
     write_number(out, "refraction_deg", passes ? trace_angle_deg(h->cos_t) : NAN);
     write_number(out, "n_sin_t", passes ? h->n_to * sqrt(fmax(0.0, 1.0 - h->cos_t * h->cos_t)) : NAN);
+    fputc('}', out);
+}
+
+static void write_json_cut(FILE *out, const ray_cut *depth, const ray_cut *weight)
+{
+    fprintf(out, ",\"cut_depth\":{\"rays\":%zu", depth->rays);
+    write_number(out, "weight", depth->weight);
+    fprintf(out, "},\"cut_weight\":{\"rays\":%zu", weight->rays);
+    write_number(out, "weight", weight->weight);
     fputc('}', out);
 }
 
@@ -288,7 +307,9 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
     write_number(out, "lambda_nm", tree->lambda_nm);
     if (t->for_page)
         write_bytes(out, "displayed", t->s, tree->radiance);
+    const ray_cut depth = ray_tree_cut(tree, RAY_END_CUT_DEPTH), weight = ray_tree_cut(tree, RAY_END_CUT_WEIGHT);
     fprintf(out, ",\"carries\":\"%s\"", scene_has_basic_radiance(scene_settings(t->s)) ? "basic" : "classic");
+    write_json_cut(out, &depth, &weight);
     fputs("}\n", out);
     TRY(cancel_check(why));
     return good ? STATUS_OK : diagnose(why, STATUS_FAILURE, MEMORY_REMEDY, "out of memory while writing JSON");
@@ -303,12 +324,22 @@ typedef struct beam_writer {
     FILE *out;
     int beam; /* the beam whose JSON object is open; -1: none */
     size_t segments;
+    ray_cut depth, weight; /* of all rays so far; weights in units of power */
     bool short_of_memory;
 } beam_writer;
 
-static status count_segments(beam_writer *w, const ray_tree *tree, diagnostic *why)
+static void add_cut(ray_cut *sum, const ray_tree *tree, ray_end end, double power)
+{
+    const ray_cut cut = ray_tree_cut(tree, end);
+    sum->rays += cut.rays;
+    sum->weight += power * cut.weight;
+}
+
+static status count_segments(beam_writer *w, const beam_ray *ray, const ray_tree *tree, diagnostic *why)
 {
     w->segments += tree->count;
+    add_cut(&w->depth, tree, RAY_END_CUT_DEPTH, ray->power);
+    add_cut(&w->weight, tree, RAY_END_CUT_WEIGHT, ray->power);
     if (w->beams->segments_max == 0 || w->segments <= w->beams->segments_max)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
@@ -320,9 +351,11 @@ static status write_beam_text(void *context, const beam_ray *ray, const ray_tree
 {
     beam_writer *w = context;
     const beam *b = &w->beams->s->beams[ray->beam];
-    TRY(count_segments(w, tree, why));
-    fprintf(w->out, "%s: %s, ray %d of %d, %.6g nm, power %.6g\n", b->name, beam_kind_words[b->kind], ray->number + 1,
-            ray->rays, ray->lambda_nm, ray->power);
+    TRY(count_segments(w, ray, tree, why));
+    fprintf(w->out, "%s: %s, ", b->name, beam_kind_words[b->kind]);
+    if (beam_fields(b) > 1)
+        fprintf(w->out, "field point %d of %d, ", ray->field + 1, beam_fields(b));
+    fprintf(w->out, "ray %d of %d, %.6g nm, power %.6g\n", ray->number + 1, ray->rays, ray->lambda_nm, ray->power);
     write_text_rays(&(traced){w->beams->s, p, tree, w->beams->scene_path, false}, w->out);
     return STATUS_OK;
 }
@@ -330,7 +363,10 @@ static status write_beam_text(void *context, const beam_ray *ray, const ray_tree
 status beams_write_text(const beam_output *b, FILE *out, diagnostic *why)
 {
     beam_writer w = {.beams = b, .out = out, .beam = -1};
-    return beams_each_ray(b->s, b->level, 0, write_beam_text, &w, why);
+    TRY(beams_each_ray(b->s, b->level, 0, write_beam_text, &w, why));
+    if (w.depth.rays + w.weight.rays > 0)
+        write_text_cut(out, &w.depth, &w.weight);
+    return STATUS_OK;
 }
 
 static void close_beam(beam_writer *w)
@@ -342,7 +378,7 @@ static status write_beam_json(void *context, const beam_ray *ray, const ray_tree
 {
     beam_writer *w = context;
     const beam *b = &w->beams->s->beams[ray->beam];
-    TRY(count_segments(w, tree, why));
+    TRY(count_segments(w, ray, tree, why));
     if (w->beam != ray->beam) {
         close_beam(w);
         fputs(w->beam >= 0 ? ",\n{\"name\":" : "{\"name\":", w->out);
@@ -366,7 +402,7 @@ static status write_beam_json(void *context, const beam_ray *ray, const ray_tree
     fputs(",\"root\":", w->out);
     w->short_of_memory |=
         !write_json_ray(&(traced){w->beams->s, p, tree, w->beams->scene_path, w->beams->for_page}, w->out, 0);
-    fputc('}', w->out);
+    fprintf(w->out, ",\"field\":%d}", ray->field);
     return STATUS_OK;
 }
 
@@ -378,7 +414,9 @@ status beams_write_json(const beam_output *b, FILE *out, diagnostic *why)
     fputs(",\"beams\":[", out);
     TRY(beams_each_ray(b->s, b->level, 0, write_beam_json, &w, why));
     close_beam(&w);
-    fprintf(out, "],\"segments\":%zu}\n", w.segments);
+    fprintf(out, "],\"segments\":%zu", w.segments);
+    write_json_cut(out, &w.depth, &w.weight);
+    fputs("}\n", out);
     return w.short_of_memory ? out_of_memory(why) : STATUS_OK;
 }
 

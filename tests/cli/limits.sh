@@ -90,7 +90,8 @@ END
             exec "$program" trace cavity.yaml --beams -o cavity-$kib.json
         ) >out 2>err
         equal "a deep beam with a stack of $kib kB" \
-            "$? $(grep -o '"kind"' cavity-$kib.json | wc -l) $(tail -c 18 cavity-$kib.json)" '0 10003 "segments":10002}'
+            "$? $(grep -o '"kind"' cavity-$kib.json | wc -l) \
+$(grep -o '"segments":[0-9]*' cavity-$kib.json)" '0 10003 "segments":10002'
     done
     "$program" trace cavity.yaml --beams -o cavity.txt
     bytes=$(wc -c <cavity.txt)

@@ -666,7 +666,8 @@ for at in 40,30 37,41 5,3 44,22; do
     check "the radiance of pixel $at equals the image" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
-check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
+check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" \
+    "schema scene depth radiance root lambda_nm carries cut_depth cut_weight "
 check "schema, scene and depth" is "$(json schema scene depth)" "$(lines 1 "$scene" 3)"
 check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
     "kind depth origin direction throughput medium n hit children end contribution far_end "
@@ -691,7 +692,12 @@ check "a shadow ray has its light" grep -q \
     '"kind":"shadow".*"end":"\(lit\|blocked\)".*"light":"lamp","light_distance":' out
 count=$(grep -c '"kind"' out)
 run trace "$scene" --pixel 40,30 --depth 3 "${small[@]}"
-check "trace prints one line per ray, and the radiance" is "$(wc -l <out)" $((count + 1))
+check "trace prints one line per ray, what is cut, and the radiance" is "$(wc -l <out)" $((count + 2))
+check "the rays that are cut" matches "$(tail -2 out)" \
+    "cut by depth: $(grep -c 'cut_depth' out) rays, weight [0-9.]+; by least weight: 0 rays, weight 0"
+run trace "$scene" --pixel 40,30 --depth 30 --min-weight 1e-3 --json "${small[@]}"
+check "a deep tree by --min-weight has few rays" holds "$(grep -c '"kind"' out) < 200 && $(json cut_weight.rays) > 5"
+run trace "$scene" --pixel 40,30 --depth 3 "${small[@]}"
 check "kinds and ends in the text" matches "$(<out)" '^camera .*hit.*refract .*R_s .*cut_depth.*radiance '
 run trace "$scene" --ray=0,1.6,-0.5,0,0.6,1 --depth 2 --set rod.visible=off
 check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" \
@@ -703,6 +709,9 @@ run trace beams.yaml --beams
 check "trace --beams names beam and ray" matches "$(head -1 out)" 'laser: pencil, ray 1 of 1, 587\.562 nm, power 1'
 run trace beams.yaml --beams --json
 check "trace --beams --json" silent_success
+run trace beams.yaml --beams --min-weight 0.1
+check "beams have their own least fraction" matches "$(<err)" \
+    "--min-weight does not act on beams; use --set BEAM.min_fraction=VALUE"
 run trace "$scene" --beams
 check "trace --beams without beams" matches "$(<err)" "has no beams; add one: cuvette scene SCENE --add beam:laser"
 run render beams.yaml --beams --json

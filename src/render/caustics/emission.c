@@ -287,7 +287,7 @@ static bool emission_beam_ray(const emission *e, int64_t i, emitted_ray *out)
                          .of_beam = true,
                          .falls = true,
                          .target = p->light_count * e->ball_count + k};
-    if (b->kind == BEAM_FAN || b->kind == BEAM_SHEET)
+    if (beam_is_flat(b))
         start_in_plane(b, &from->axes, s, out);
     else
         start_round(b, &from->axes, s, out);

@@ -184,8 +184,7 @@ static status prepare_beams(emission *e, diagnostic *why)
 {
     for (int k = 0; k < e->p->beam_count; k++) {
         const beam *b = &e->p->beams[k];
-        const bool is_flat = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
-        const bool has_normal = is_flat && vec3_dot(b->normal, b->normal) > 0.0;
+        const bool has_normal = beam_is_flat(b) && vec3_dot(b->normal, b->normal) > 0.0;
         TRY(ray_axes_set(&e->beams[k].axes, b->position, beam_axis(b), has_normal ? &b->normal : NULL, why));
         const vec3 color = e->beams[k].color = color_of(b);
         e->beams[k].flux = b->power * fmax(color.x, fmax(color.y, color.z)) / (2.0 * PI * PI);

@@ -6,7 +6,6 @@
 #include "render/inspect/ray_line.h"
 #include "render/plan/ray_axes.h"
 #include "scene/model/camera.h"
-#include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -15,110 +14,171 @@
 
 static const char smaller_tree[] = "use a smaller depth or a larger min_fraction";
 
-/* Creates a probe without lights, so that no shadow rays are traced. */
-static status probe_of_beam(const scene *s, const beam *b, double lambda_nm, isa level, probe **out, diagnostic *why)
-{
-    scene *unlit = scene_clone(s);
-    status code = unlit ? STATUS_OK : out_of_memory(why);
-    while (code == STATUS_OK && unlit->light_count > 0)
-        code = scene_remove(unlit, unlit->lights[unlit->light_count - 1].name, why);
-    if (code == STATUS_OK) {
-        unlit->render.lambda_nm = lambda_nm;
-        unlit->render.min_weight = b->min_fraction;
-        code = probe_create(unlit, level, out, why);
-    }
-    if (code == STATUS_OK) {
-        probe_limit_depth(*out, (int)b->depth, smaller_tree);
-        probe_use_one_wavelength(*out);
-    }
-    scene_destroy(unlit);
-    return code;
-}
+/* A probe traces the beams of one wavelength and smallest fraction. It costs milliseconds, more than most rays, so that
+ * those last used are kept. */
+enum { PROBES_KEPT = 64 };
 
-static void start_of(const beam *b, const ray_axes *a, const beam_ray *ray, vec3 *origin, vec3 *direction)
-{
-    const bool spreads = !beam_is_parallel(b);
-    const double size = spreads ? b->angle_deg : b->width;
-    if (b->kind == BEAM_FAN || b->kind == BEAM_SHEET)
-        ray_axes_in_plane(a, spreads, size, ray->number, ray->rays, origin, direction);
-    else
-        ray_axes_round(a, spreads, size, ray->number, ray->rays, origin, direction);
-}
+typedef struct kept_probe {
+    probe *tracer; /* NULL: none yet */
+    double lambda_nm, min_fraction;
+} kept_probe;
 
 typedef struct beam_work {
+    const scene *s;
+    scene *unlit; /* without lights, so that no shadow rays are traced, and without beams */
+    isa level;
+    kept_probe kept[PROBES_KEPT];
+    size_t next; /* the kept probe that is replaced next */
     beam_visit *visit;
     void *context;
     ray_tree tree;
-    size_t segments; /* of all rays so far */
     diagnostic *why;
 } beam_work;
 
-static status visit_ray(beam_work *w, const beam *b, const ray_axes *a, const beam_ray *ray, probe *p)
+static status scene_without_light(const scene *s, scene **out, diagnostic *why)
 {
+    scene bare = *s;
+    bare.light_count = bare.beam_count = 0;
+    *out = scene_clone(&bare);
+    return *out ? STATUS_OK : out_of_memory(why);
+}
+
+static status probe_of_beam(beam_work *w, const beam *b, double lambda_nm, probe **out)
+{
+    kept_probe *k = w->kept;
+    while (k < w->kept + PROBES_KEPT && k->tracer && (k->lambda_nm != lambda_nm || k->min_fraction != b->min_fraction))
+        k++;
+    if (k == w->kept + PROBES_KEPT) {
+        k = &w->kept[w->next++ % PROBES_KEPT];
+        probe_destroy(k->tracer);
+        k->tracer = NULL;
+    }
+    if (!k->tracer) {
+        w->unlit->render.lambda_nm = k->lambda_nm = lambda_nm;
+        w->unlit->render.min_weight = k->min_fraction = b->min_fraction;
+        TRY(probe_create(w->unlit, w->level, &k->tracer, w->why));
+        probe_use_one_wavelength(k->tracer);
+    }
+    probe_limit_depth(k->tracer, (int)b->depth, smaller_tree);
+    *out = k->tracer;
+    return STATUS_OK;
+}
+
+/* A beam's rays from one of its field points. */
+typedef struct field_rays {
+    const beam *b;
+    ray_axes axes;
+    ray_pattern pattern;
+} field_rays;
+
+static void start_of(const field_rays *f, const beam_ray *ray, vec3 *origin, vec3 *direction)
+{
+    const beam *b = f->b;
+    const bool spreads = !beam_is_parallel(b);
+    const double size = spreads ? b->angle_deg : b->width;
+    if (beam_is_flat(b))
+        ray_axes_in_plane(&f->axes, spreads, size, ray->number, ray->rays, origin, direction);
+    else
+        ray_axes_round(&f->axes, &f->pattern, spreads, size, ray->number, origin, direction);
+}
+
+static status visit_ray(beam_work *w, const field_rays *f, const beam_ray *ray, probe *p)
+{
+    const beam *b = f->b;
     vec3 origin, direction;
-    start_of(b, a, ray, &origin, &direction);
+    start_of(f, ray, &origin, &direction);
     const status code = b->branches ? probe_ray(p, origin, direction, &w->tree, w->why)
                                     : probe_path(p, origin, direction, -1, &w->tree, w->why);
     if (code == STATUS_BAD_INPUT && w->tree.count >= PROBE_NODES_MAX)
         return diagnose(w->why, code, smaller_tree, "a ray of beam '%s' has more than %d segments", b->name,
                         (int)PROBE_NODES_MAX);
-    if (code != STATUS_OK)
-        return code;
-    w->segments += w->tree.count;
-    if (w->segments > BEAMS_SEGMENTS_MAX)
-        return diagnose(w->why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_fraction",
-                        "the beams have more than %d segments", BEAMS_SEGMENTS_MAX);
-    return w->visit(w->context, ray, &w->tree, p, w->why);
+    return code == STATUS_OK ? w->visit(w->context, ray, &w->tree, p, w->why) : code;
 }
 
-static status visit_wavelength(beam_work *w, const scene *s, isa level, const beam *b, const ray_axes *a, beam_ray ray)
+/* Moves or turns the axes to a field point. The disc of parallel rays stays, so that all field points fill it; rays
+ * from a point are aimed at the target, if the beam has one. */
+static status axes_of_field(const beam *b, const ray_axes *middle, int field, ray_axes *out, diagnostic *why)
+{
+    const bool spreads = !beam_is_parallel(b), has_target = vec3_dot(b->direction, b->direction) == 0.0;
+    vec3 from, axis;
+    *out = *middle;
+    if (beam_fields(b) == 1)
+        return STATUS_OK;
+    ray_axes_field(middle, spreads, spreads ? b->field_width : b->field_deg, field, (int)b->field_columns,
+                   (int)b->field_rows, &from, &axis);
+    if (spreads)
+        return ray_axes_set(out, from, has_target ? vec3_sub(b->target, from) : axis, &middle->normal, why);
+    out->axis = axis;
+    return STATUS_OK;
+}
+
+static status visit_wavelength(beam_work *w, const field_rays *f, beam_ray ray)
 {
     probe *p = NULL;
-    status code = probe_of_beam(s, b, ray.lambda_nm, level, &p, w->why);
+    TRY(probe_of_beam(w, f->b, ray.lambda_nm, &p));
+    status code = STATUS_OK;
     for (; ray.number < ray.rays && code == STATUS_OK; ray.number++)
-        code = visit_ray(w, b, a, &ray, p);
-    probe_destroy(p);
+        code = visit_ray(w, f, &ray, p);
     return code;
 }
 
-static status visit_beam(beam_work *w, const scene *s, isa level, int index, int rays)
+static status visit_field(beam_work *w, const field_rays *f, int index, int field)
 {
-    const beam *b = &s->beams[index];
-    const int waves = beam_wavelengths(b), count = rays > 0 ? rays : (int)b->rays;
-    const bool is_flat = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
-    const bool has_normal = is_flat && vec3_dot(b->normal, b->normal) > 0.0;
-    ray_axes a;
-    status code = ray_axes_set(&a, b->position, beam_axis(b), has_normal ? &b->normal : NULL, w->why);
+    const beam *b = f->b;
+    const int waves = beam_wavelengths(b), fields = beam_fields(b), count = f->pattern.count;
+    status code = STATUS_OK;
     for (int i = 0; i < waves && code == STATUS_OK; i++) {
-        const beam_ray first = {index, 0, count, beam_lambda(b, i), b->power / count / waves};
-        code = visit_wavelength(w, s, level, b, &a, first);
+        const beam_ray first = {index, field, 0, count, beam_lambda(b, i), b->power / count / waves / fields};
+        code = visit_wavelength(w, f, first);
     }
     return code;
 }
 
-/* The number of rays is checked before the first is traced. */
-static status check_rays(const scene *s, int rays, diagnostic *why)
+static status visit_beam(beam_work *w, int index, int rays)
 {
-    int64_t all = 0;
-    for (size_t i = 0; i < s->beam_count; i++)
-        if (s->beams[i].visible)
-            all += (int64_t)beam_wavelengths(&s->beams[i]) * (rays > 0 ? rays : s->beams[i].rays);
-    if (all <= BEAMS_RAYS_MAX)
-        return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "use fewer rays, wavelengths or beams",
-                    "the beams have %lld rays, more than %d", (long long)all, BEAMS_RAYS_MAX);
+    const beam *b = &w->s->beams[index];
+    const bool has_normal = beam_is_flat(b) && vec3_dot(b->normal, b->normal) > 0.0;
+    const beam_pattern pattern = beam_is_flat(b) ? PATTERN_SPIRAL : (beam_pattern)b->pattern;
+    field_rays f = {.b = b, .pattern = ray_pattern_of(pattern, rays > 0 ? rays : (int)b->rays)};
+    ray_axes middle;
+    status code = ray_axes_set(&middle, b->position, beam_axis(b), has_normal ? &b->normal : NULL, w->why);
+    for (int field = 0; field < beam_fields(b) && code == STATUS_OK; field++) {
+        code = axes_of_field(b, &middle, field, &f.axes, w->why);
+        THEN(code, visit_field(w, &f, index, field));
+    }
+    return code;
 }
 
 status beams_each_ray(const scene *s, isa level, int rays, beam_visit *visit, void *context, diagnostic *why)
 {
-    TRY(check_rays(s, rays, why));
-    beam_work w = {.visit = visit, .context = context, .why = why};
-    status code = STATUS_OK;
+    beam_work w = {.s = s, .level = level, .visit = visit, .context = context, .why = why};
+    status code = scene_without_light(s, &w.unlit, why);
     for (size_t i = 0; i < s->beam_count && code == STATUS_OK; i++)
         if (s->beams[i].visible)
-            code = visit_beam(&w, s, level, (int)i, rays);
+            code = visit_beam(&w, (int)i, rays);
+    for (size_t i = 0; i < PROBES_KEPT; i++)
+        probe_destroy(w.kept[i].tracer);
     ray_tree_release(&w.tree);
+    scene_destroy(w.unlit);
     return code;
+}
+
+static int64_t ray_count_of(const beam *b, int rays)
+{
+    const int asked = rays > 0 ? rays : (int)b->rays;
+    const int count = beam_is_flat(b) ? asked : ray_pattern_of((beam_pattern)b->pattern, asked).count;
+    return (int64_t)beam_wavelengths(b) * beam_fields(b) * count;
+}
+
+ray_cut ray_tree_cut(const ray_tree *tree, ray_end end)
+{
+    ray_cut cut = {0};
+    for (size_t i = 0; i < tree->count; i++)
+        if (tree->node[i].end == end) {
+            cut.rays++;
+            cut.weight += beam_fraction(&tree->node[i]);
+        }
+    return cut;
 }
 
 double beam_fraction(const ray_node *node)
@@ -163,6 +223,18 @@ void beam_screen_release(beam_screen *screen)
     free(screen->bin);
     free(screen->color);
     screen->bin = screen->color = NULL;
+}
+
+/* The number of rays is checked before the first is traced. */
+static status check_rays(const scene *s, int rays, diagnostic *why)
+{
+    int64_t all = 0;
+    for (size_t i = 0; i < s->beam_count && all <= SCREEN_ALL_RAYS_MAX; i++)
+        all += s->beams[i].visible ? ray_count_of(&s->beams[i], rays) : 0;
+    if (all <= SCREEN_ALL_RAYS_MAX)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "use fewer rays, wavelengths, field points or beams",
+                    "the beams have more than %d rays", SCREEN_ALL_RAYS_MAX);
 }
 
 static status prepare_screen(beam_screen *screen, diagnostic *why)
@@ -221,7 +293,10 @@ static status cross_screen(void *context, const beam_ray *ray, const ray_tree *t
     beam_screen *screen = context;
     double rgb[3];
     (void)p;
-    (void)why;
+    screen->segment_count += tree->count;
+    if (screen->segment_count > SCREEN_SEGMENTS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_fraction",
+                        "the beams have more than %d segments", SCREEN_SEGMENTS_MAX);
     beam_wavelength_color(ray->lambda_nm, rgb);
     screen->ray_count++;
     screen->power += ray->power;
@@ -233,6 +308,7 @@ static status cross_screen(void *context, const beam_ray *ray, const ray_tree *t
 status beam_screen_expose(const scene *s, isa level, beam_screen *screen, diagnostic *why)
 {
     TRY(prepare_screen(screen, why));
+    TRY(check_rays(s, screen->rays_of_beam, why));
     return beams_each_ray(s, level, screen->rays_of_beam, cross_screen, screen, why);
 }
 

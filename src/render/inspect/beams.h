@@ -9,21 +9,29 @@
 
 typedef struct beam_ray {
     int beam;         /* index in the scene's beams */
-    int number, rays; /* this ray's number in its beam, from 0, and the number of rays, equal for every wavelength */
+    int field;        /* number of its field point, from 0, row by row */
+    int number, rays; /* this ray's number, from 0, and the number of rays, equal for every wavelength and field */
     double lambda_nm;
-    double power; /* at the ray's start: the beam's power divided by the numbers of its rays and wavelengths */
+    double power; /* at the ray's start: the beam's power divided by the numbers of its rays, wavelengths and fields */
 } beam_ray;
 
 /* Receives the tree of a ray, without shadow rays; for a beam without branches it is a path, each node the child of the
  * one before. Any status but STATUS_OK ends the visits. */
 typedef status beam_visit(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why);
 
-/* Limits for the sum over all beams: a few seconds of work, for which the laboratory's image must wait. */
-enum { BEAMS_RAYS_MAX = 1000000, BEAMS_SEGMENTS_MAX = 5000000 };
-
-/* Visits all rays of the visible beams, in order of beam, wavelength and number. Returns STATUS_BAD_INPUT beyond the
- * limits. rays: rays per beam and wavelength; 0: each beam's number. The scene's files must be loaded. */
+/* Visits all rays of the visible beams, in order of beam, field point, wavelength and number. Returns STATUS_BAD_INPUT
+ * for a tree of more than PROBE_NODES_MAX rays; there is no limit of beams and rays. It can be cancelled at every ray.
+ * rays: rays per beam, field point and wavelength; 0: each beam's number. The scene's files must be loaded. */
 status beams_each_ray(const scene *s, isa level, int rays, beam_visit *visit, void *context, diagnostic *why);
+
+/* The rays of a tree that were not traced, for one reason: RAY_END_CUT_DEPTH or RAY_END_CUT_WEIGHT. weight: the sum of
+ * their fractions of the first ray's light. */
+typedef struct ray_cut {
+    size_t rays;
+    double weight;
+} ray_cut;
+
+ray_cut ray_tree_cut(const ray_tree *tree, ray_end end);
 
 /* The fraction of the ray's power at the start of a node: the mean of the channels of its throughput. */
 double beam_fraction(const ray_node *node);
@@ -39,8 +47,8 @@ void beam_line_color(const beam *b, double lambda_nm, double rgb[3]);
 /* --- screens --- */
 
 /* A rectangle that bins the power of the beams' rays that cross it. It does not block them, and is not part of the
- * scene. */
-enum { SCREEN_BINS_MAX = 512, SCREEN_RAYS_MAX = 100000 };
+ * scene. The limits for all beams are a few seconds of work, for which the laboratory's image must wait. */
+enum { SCREEN_BINS_MAX = 512, SCREEN_RAYS_MAX = 100000, SCREEN_ALL_RAYS_MAX = 1000000, SCREEN_SEGMENTS_MAX = 5000000 };
 
 typedef struct beam_screen {
     vec3 centre, normal;
@@ -53,6 +61,7 @@ typedef struct beam_screen {
     double power;                /* of all beams */
     double received;             /* sum of the bins */
     size_t ray_count, hit_count; /* rays of the beams; crossings of the screen */
+    size_t segment_count;        /* of the rays' trees */
 } beam_screen;
 
 status beam_screen_expose(const scene *s, isa level, beam_screen *screen, diagnostic *why);

@@ -137,7 +137,7 @@ static status check_lines(const scene *s, diagnostic *why)
     int count = 0;
     for (size_t i = 0; i < s->light_count; i++)
         count += s->lights[i].spectrum == LAMP_LINE;
-    for (size_t i = 0; i < s->beam_count; i++)
+    for (size_t i = 0; i < s->beam_count && scene_has_caustics(&s->render); i++)
         count += !s->beams[i].white && beam_lights_scene(&s->beams[i], &s->render);
     return count <= LINE_LAMPS_MAX
                ? STATUS_OK
@@ -154,9 +154,11 @@ static status check_beam(const beam *b, diagnostic *why)
     if (b->branches && b->depth > DEPTH_TREE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "set branches to off, or depth to 0..64",
                         "%.80s: a depth of %lld is for beams without branches", b->name, (long long)b->depth);
-    const bool is_plane = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
+    if (b->lights && beam_fields(b) > 1)
+        return diagnose(why, STATUS_BAD_INPUT, "set field_columns and field_rows to 1, or lights to off",
+                        "%.80s: a beam that lights has one field point", b->name);
     const double length = vec3_length(b->normal);
-    if (is_plane && length > 0.0 && vec3_length(vec3_cross(vec3_normalize(axis), b->normal)) < 1e-9 * length)
+    if (beam_is_flat(b) && length > 0.0 && vec3_length(vec3_cross(vec3_normalize(axis), b->normal)) < 1e-9 * length)
         return diagnose(why, STATUS_BAD_INPUT, "set 'normal' to a vector across the beam, or to 0,0,0",
                         "%.80s: the normal of its plane is parallel to the beam", b->name);
     return STATUS_OK;
@@ -491,8 +493,6 @@ status check_limits(const scene *s, diagnostic *why)
     if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 1024 lights", "more than 1024 lights");
     TRY(check_lines(s, why));
-    if (s->beam_count > SCENE_BEAMS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 beams", "more than 64 beams");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use at most 64 meshes and 64 textures", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");

@@ -64,11 +64,14 @@ static inline bool light_has_size(const light *l)
 
 /* --- beams --- */
 
-enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000, BEAM_DEPTH_MAX = 10000 };
+enum { BEAM_RAYS_MAX = 1000000, BEAM_FIELDS_MAX = 1000, BEAM_DEPTH_MAX = 10000 };
 
 /* Rays from one point in a cone (pencil) or a plane (fan), or parallel rays in a plane (sheet) or over a disc
  * (bundle). */
 typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
+
+/* Where the rays of a pencil and a bundle are in the cone or disc; all divide it into equal parts (ray_axes.h). */
+typedef enum beam_pattern { PATTERN_SPIRAL, PATTERN_RINGS, PATTERN_SQUARE, PATTERN_SOBOL } beam_pattern;
 
 /* Distribution of the photons' power: even over the angle or width, or exp(-2 r^2 / w^2), with 2 w as the angle or
  * width. */
@@ -81,11 +84,14 @@ typedef struct beam {
     vec3 direction; /* used instead of the target unless it is zero */
     vec3 normal;    /* of the plane of a fan or sheet; zero: as in `cuvette fan` */
     int64_t rays;
+    int64_t pattern;                   /* beam_pattern */
+    int64_t field_columns, field_rows; /* field points: each has all rays */
+    double field_deg, field_width; /* between the outermost field points: of parallel rays, and of rays from a point */
     double angle_deg, width; /* full angle of a pencil or fan; width of a sheet, diameter of a bundle, scene units */
     int64_t white;           /* 1: `wavelengths` wavelengths from BEAM_LOW_NM to BEAM_HIGH_NM instead of lambda_nm */
     double lambda_nm;
     int64_t wavelengths;
-    double power;     /* sum over all rays, at their starts */
+    double power;     /* sum over all rays and field points, at their starts */
     int64_t branches; /* 1: reflected and refracted rays; 0: the refracted path, as in `cuvette fan` */
     int64_t depth;
     double min_fraction;
@@ -111,6 +117,11 @@ static inline double beam_lambda(const beam *b, int number)
     return BEAM_LOW_NM + (double)(BEAM_HIGH_NM - BEAM_LOW_NM) * number / (double)(b->wavelengths - 1);
 }
 
+static inline int beam_fields(const beam *b)
+{
+    return (int)(b->field_columns * b->field_rows);
+}
+
 /* The direction of the beam's axis, of any length. */
 static inline vec3 beam_axis(const beam *b)
 {
@@ -122,6 +133,11 @@ static inline bool beam_lights_scene(const beam *b, const render_settings *r)
 {
     const bool seen = b->white || (b->lambda_nm >= OBSERVER_LOW_NM && b->lambda_nm <= OBSERVER_HIGH_NM);
     return b->lights && b->visible && b->power > 0.0 && seen && scene_has_caustics(r);
+}
+
+static inline bool beam_is_flat(const beam *b)
+{
+    return b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
 }
 
 static inline bool beam_is_parallel(const beam *b)

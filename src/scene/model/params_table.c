@@ -45,6 +45,7 @@ static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", 
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", "data", NULL};
 static const char *const profile_words[] = {"uniform", "gaussian", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
+static const char *const pattern_words[] = {"spiral", "rings", "square", "sobol", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "image", "rain", "cie", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
@@ -441,13 +442,28 @@ static const param table[] = {
     BEAM_VECTOR(direction, "", "0,0,0", "direction of the axis, of any length; 0,0,0: towards the target"),
     BEAM_VECTOR(normal, "", "0,0,0",
                 "fan and sheet: normal of the plane of the rays; 0,0,0: up for a horizontal beam, else horizontal"),
-    BEAM_INTEGER(rays, 1, BEAM_RAYS_MAX, "1", "number of rays of each wavelength; 1: only the axis"),
+    BEAM_INTEGER(rays, 1, BEAM_RAYS_MAX, "1", "number of rays of each wavelength and field point; 1: only the axis"),
     BEAM_REAL(angle_deg, "deg", 0, 179, "10", "pencil and fan: full angle between the outermost rays"),
     BEAM_REAL(width, "scene units", 0, FAR, "0.5", "sheet and bundle: distance between the outermost rays"),
+    ROW(PARAM_BEAM, "pattern", PARAM_CHOICE, "", 0, 0, false, "spiral",
+        "places of the rays of a pencil and a bundle, each in an equal part of the cone or disc: a spiral; the largest "
+        "number of full rings (1, 7, 19, 37, 61, ... rays) or the largest square grid that `rays` suffices for; or the "
+        "points of Sobol'",
+        pattern_words, BEAM_SHOWN(pattern)),
+    BEAM_INTEGER(field_columns, 1, BEAM_FIELDS_MAX, "1",
+                 "number of field points side by side: starts of a pencil or fan, directions of a sheet or bundle, "
+                 "which all pass the same disc at the position"),
+    BEAM_INTEGER(field_rows, 1, BEAM_FIELDS_MAX, "1", "number of field points one above the other"),
+    ROW(PARAM_BEAM, "field_deg", PARAM_REAL, "deg", 0, 170, false, "10",
+        "sheet and bundle: full angle between the outermost field points, in both directions", NULL,
+        BEAM_SHOWN(field_deg)),
+    ROW(PARAM_BEAM, "field_width", PARAM_REAL, "scene units", 0, FAR, false, "1",
+        "pencil and fan: distance between the outermost field points, in both directions", NULL,
+        BEAM_SHOWN(field_width)),
     BEAM_CHOICE(white, off_on, "off", "on: white light, as several wavelengths; off: only lambda_nm"),
     BEAM_REAL(lambda_nm, "nm", 200, 2000, "587.5618", "wavelength in vacuum; the default is the d line"),
     BEAM_INTEGER(wavelengths, 1, 64, "7", "wavelengths of white light, evenly from 400 to 700 nm, of equal power"),
-    BEAM_REAL(power, "", 0, 1e9, "1", "total power of all rays at their starts, in any unit"),
+    BEAM_REAL(power, "", 0, 1e9, "1", "total power of all rays and field points at their starts, in any unit"),
     ROW(PARAM_BEAM, "branches", PARAM_CHOICE, "", 0, 0, false, "on",
         "on: at each surface the reflected and the refracted ray; off: only the refracted ray, or the reflected one "
         "if there is none",

@@ -39,13 +39,15 @@ static void refused(const char *keys, const char *what, const char *remedy)
 static void invalid_beams_are_refused_with_place_and_remedy(void **state)
 {
     (void)state;
-    refused("rays: 0", "ray.rays: 0 is out of range", "give an integer 1..10000");
+    refused("rays: 0", "ray.rays: 0 is out of range", "give an integer 1..1000000");
     refused("kind: laser", "ray.kind: 'laser' is not one of the choices", "give one of: pencil, fan, sheet, bundle");
     refused("target: [-3, 1, 0]", "ray: the beam is at its own target",
             "move its position or its target, or set its direction");
     refused("kind: fan, direction: [0, 0, 2], normal: [0, 0, 1]",
             "ray: the normal of its plane is parallel to the beam",
             "set 'normal' to a vector across the beam, or to 0,0,0");
+    refused("lights: on, field_rows: 2", "ray: a beam that lights has one field point",
+            "set field_columns and field_rows to 1, or lights to off");
     refused("width: -1", "ray.width: -1 is out of range", "give a number 0..1000000");
 }
 
@@ -488,22 +490,17 @@ static status count_ray(void *context, const beam_ray *ray, const ray_tree *tree
     return STATUS_OK;
 }
 
-static void the_work_of_all_beams_is_limited(void **state)
+/* A screen is answered while the laboratory's image waits. */
+static void the_work_of_a_screen_is_limited(void **state)
 {
     (void)state;
-    scene *s = with_beam("kind: sheet, rays: 10000, white: on, wavelengths: 64", BALL);
+    scene *s = with_beam("kind: sheet, rays: 10000, white: on, wavelengths: 64, field_rows: 2", BALL);
     diagnostic why = {.line = 0};
-    int rays = 0;
-    assert_int_equal(beams_each_ray(s, isa_best(), 100000, count_ray, &rays, &why), STATUS_BAD_INPUT);
-    assert_int_equal(rays, 0);
-    assert_string_equal(why.what, "the beams have 6400000 rays, more than 1000000");
-    scene_destroy(s);
-    /* the beams' own numbers count too */
-    s = scene_from("beams: {one: {kind: sheet, rays: 10000, white: on, wavelengths: 64}, "
-                   "two: {kind: sheet, rays: 10000, white: on, wavelengths: 64}}\nsolids: {" BALL "}\n");
-    assert_int_equal(beams_each_ray(s, isa_best(), 0, count_ray, &rays, &why), STATUS_BAD_INPUT);
-    assert_int_equal(rays, 0);
-    assert_string_equal(why.what, "the beams have 1280000 rays, more than 1000000");
+    beam_screen screen = {.normal = {0, 0, 1}, .width = 1, .height = 1, .columns = 1, .rows = 1};
+    assert_int_equal(beam_screen_expose(s, isa_best(), &screen, &why), STATUS_BAD_INPUT);
+    assert_int_equal(screen.ray_count, 0);
+    assert_string_equal(why.what, "the beams have more than 1000000 rays");
+    beam_screen_release(&screen);
     scene_destroy(s);
 }
 
@@ -592,7 +589,7 @@ int main(void)
         cmocka_unit_test(a_drawn_beam_passes_through_a_surface),
         cmocka_unit_test(only_opaque_solids_hide_beams),
         cmocka_unit_test(the_remedy_for_a_ray_of_too_many_segments_is_the_beams_own),
-        cmocka_unit_test(the_work_of_all_beams_is_limited),
+        cmocka_unit_test(the_work_of_a_screen_is_limited),
         cmocka_unit_test(the_normal_of_a_pencil_is_ignored),
         cmocka_unit_test(beams_go_with_the_whole_scene),
         cmocka_unit_test(a_refused_move_leaves_beams),

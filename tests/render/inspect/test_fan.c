@@ -328,13 +328,14 @@ static void rays_fill_the_width_and_the_disc(void **state)
     assert_true(ray_axes_in_plane(&a, true, 60.0, 4, 5, &origin, &direction) == 30.0);
     assert_vec(direction, -0.5, 0, sqrt(0.75));
     enum { RAYS = 20000 };
+    const ray_pattern spiral = ray_pattern_of(PATTERN_SPIRAL, RAYS);
     double square = 0.0, cosine = 0.0;
     for (int i = 0; i < RAYS; i++) {
-        ray_axes_round(&a, false, 2.0, i, RAYS, &origin, &direction);
+        ray_axes_round(&a, &spiral, false, 2.0, i, &origin, &direction);
         const double x = origin.x - 1, y = origin.y - 2;
         square += (x * x + y * y) / RAYS;
         assert_true(x * x + y * y <= 1.0);
-        ray_axes_round(&a, true, 120.0, i, RAYS, &origin, &direction);
+        ray_axes_round(&a, &spiral, true, 120.0, i, &origin, &direction);
         cosine += direction.z / RAYS;
         assert_true(direction.z >= 0.5 - 1e-12);
         assert_true(fabs(vec3_dot(direction, direction) - 1.0) < 1e-12);
