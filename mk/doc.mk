@@ -1,14 +1,17 @@
 # Documentation, and the site with the laboratory for browsers. Included by the Makefile.
 
-# The manual in build/man: the pages of src/manual, three of them completed between their comments "begin PART" and
-# "end PART" from the table of parameters, the list of quantities (src/job/quantities.c) and results/README.md.
-complete = set -o pipefail; $(2) | sed -i '/^\.\\" begin $(1)/r /dev/stdin' $(build)/man/man5/$(3)
+# The manual in build/man: the pages of src/manual, four of them completed between their comments "begin PART" and "end
+# PART" from the table of parameters, the list of quantities (src/job/quantities.c), results/README.md and the rows of
+# make validate.
+complete = set -o pipefail; $(2) | sed -i '/^\.\\" begin $(1)/r /dev/stdin' $(build)/man/man$(3)
+validated := $(wildcard experiments/validation/*.cases) experiments/validation/cases.csv
 $(build)/man/made: $(wildcard src/manual/man?/*) src/manual/results.awk results/README.md $(build)/cuvette \
-  $(build)/account_keys
+  $(build)/account_keys src/manual/validation.awk $(validated)
 	@rm -rf $(@D) && mkdir -p $(@D) && cp -r src/manual/man? $(@D)
-	@$(call complete,parameters,$(build)/cuvette params --man,cuvette-scene.5)
-	@$(call complete,account,$(build)/account_keys,cuvette-account.5)
-	@$(call complete,results,awk -f src/manual/results.awk results/README.md,cuvette-results.5)
+	@$(call complete,parameters,$(build)/cuvette params --man,5/cuvette-scene.5)
+	@$(call complete,account,$(build)/account_keys,5/cuvette-account.5)
+	@$(call complete,results,awk -f src/manual/results.awk results/README.md,5/cuvette-results.5)
+	@$(call complete,validation,awk -f src/manual/validation.awk $(validated),7/cuvette-validation.7)
 	@touch $@
 $(build)/account_keys: src/manual/account_keys.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)

@@ -57,6 +57,15 @@ claims: $(build)/cuvette
 	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' experiments/tables.sh '$(claimed)'
 	@paper/claims.py '$(claimed)' $(build)/claims
 
+# Published tables and closed forms next to the program: cuvette-validation(7). RENEW=1 writes the rows and figures of
+# that page.
+.PHONY: validate
+## validate: published values next to ours; RENEW=1 renews their page
+validate: $(build)/cuvette
+	@experiments/validate.py $(build)/cuvette $(build)/validation.csv
+	$(if $(RENEW),@cp $(build)/validation.csv experiments/validation/cases.csv)
+	$(if $(RENEW),@experiments/validation/figures.sh $(build)/cuvette experiments/validation)
+
 ## paper: rebuild the paper and its supplement from existing rows
 paper: $(build)/cuvette
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)' $(if $(QUICK),RESULTS='$(RESULTS)')

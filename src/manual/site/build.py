@@ -15,6 +15,7 @@ import frame
 import header
 import lessons
 import manual
+import validation
 from laboratory import Laboratory
 from links import Links
 from page import Group, Page, Trouble, output_of
@@ -51,6 +52,8 @@ LABELS = {
 def convert(source, program, pages):
     """The page of one source, by its kind."""
     path = ROOT / source
+    if source.endswith('/cuvette-validation.7'):
+        return validation.page(ROOT, source)
     if re.fullmatch(r'src/manual/man\d/.*', source):
         return manual.page(pages / path.relative_to(ROOT / 'src/manual'))
     if source.endswith('.h'):

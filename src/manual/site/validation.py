@@ -1,0 +1,56 @@
+"""The page of cuvette-validation(7): its text, then a table for each kind of cases, from the rows of make validate."""
+
+import csv
+import re
+from html import escape
+
+import manual
+
+ROWS = 'experiments/validation/cases.csv'
+FIGURES = (
+    ('ball.svg', 'Parallel rays through a ball of n = 1.8, their caustic and focus: <code>cuvette fan</code>.'),
+    ('calcite.svg', 'The ordinary and the extraordinary ray of one ray in calcite: <code>cuvette trace</code>.'),
+)
+
+
+def page(root, source):
+    """The manual page without the list of cases, which the tables have."""
+    made = manual.page(root / source)
+    with open(root / ROWS, newline='', encoding='utf-8') as file:
+        rows = list(csv.DictReader(file))
+    kinds = list(dict.fromkeys(row['kind'] for row in rows))
+    passed = sum(row['verdict'] == 'pass' for row in rows)
+    up = '../' * source.count('/')
+    figures = ''.join(f'<figure><img src="{up}{ROWS.rpartition("/")[0]}/{name}" alt="{re.sub("<[^>]*>", "", text)}">'
+                      f'<figcaption>{text}</figcaption></figure>\n' for name, text in FIGURES)
+    tables = ''.join(table(root, kind, [row for row in rows if row['kind'] == kind], up) for kind in kinds)
+    summary = (f'<p>{passed} of {len(rows)} cases of {len(kinds)} kinds are within their tolerances. The rows are in '
+               f'<a href="{up}{ROWS}">{ROWS}</a>.</p>\n')
+    made.body = re.sub(r'(<h2 class="Sh" id="CASES">.*?</h2>\n).*?</section>',
+                       lambda match: match[1] + summary + figures + tables + '</section>', made.body, flags=re.S)
+    return made
+
+
+def head(root, kind):
+    """Title and purpose, of the first section of the kind's file."""
+    text = (root / f'experiments/validation/{kind}.cases').read_text(encoding='utf-8')
+    title, about = re.search(r'^title: (.*)\nabout: ((?:.|\n )*)', text, re.M).groups()
+    return title, re.sub(r'\s+', ' ', about).strip()
+
+
+def table(root, kind, rows, up):
+    title, about = head(root, kind)
+    text = [f'<h3 id="{kind}">{escape(title)}</h3>\n<p>{escape(about)} The formulas are in <a href="{up}experiments/'
+            f'validation/{kind}.cases">{kind}.cases</a>.</p>\n<table class="cases">\n'
+            '<thead><tr><th>what, and source</th>'
+            '<th>expected</th><th>ours</th><th>deviation</th><th>tolerance</th></tr></thead>\n<tbody>\n']
+    for row in rows:
+        unit = f' {escape(row["unit"])}' if row['unit'] else ''
+        ours = f'{float(row["ours"]):.9g}{unit}' if row['ours'] else 'no value'
+        ours = ours if row['verdict'] == 'pass' else f'<b>{ours}: {row["verdict"]}</b>'
+        deviation = f'{float(row["deviation"]):.2g}' if row['deviation'] else ''
+        text.append(f'<tr><td>{escape(row["what"])}<small>{escape(row["source"])}<br>'
+                    f'Tolerance: {escape(row["reason"])}</small></td>'
+                    f'<td>{float(row["expected"]):.9g}{unit}</td><td>{ours}</td><td>{deviation}</td>'
+                    f'<td>{float(row["tolerance"]):.2g}</td></tr>\n')
+    return ''.join(text) + '</tbody>\n</table>\n'
