@@ -44,37 +44,38 @@ static const command_form form = {
     .argument_limit = 1,
     .excess_remedy = "give one medium, or none for all",
     .excess = "unexpected argument '%.128s'",
-    .about = "Print the media catalogue: refractive index at the d, F and C lines, Abbe number, wavelength range and "
-             "temperature of the measurement, reference medium (air or vacuum) and source; then the metals with n and "
-             "k of their complex index, and their reflectance R_d in vacuum. With a name, print all data "
-             "for that medium: the dispersion formula with its coefficients, and caveats; with a file of optical data "
-             "(.yml of refractiveindex.info, .agf, .csv), what a scene reads of it.\vIndices are as published, "
-             "relative to air or to vacuum; with a name the index relative to vacuum is printed as well. An "
-             "asterisk marks an index outside the measured range. --at never extrapolates. On a terminal the lines are "
-             "wrapped to "
-             "its width; output to a pipe or file is not wrapped.",
+    .about =
+        "Print the media catalogue: refractive index at the d, F and C lines, Abbe number, wavelength range and "
+        "temperature of the measurement, reference medium (air or vacuum) and source; then the metals with n and "
+        "k of their complex index, and their reflectance R_d in vacuum; then named coatings with their reflectance on "
+        "bk7. With a name, print all data "
+        "for that medium, metal or coating: the dispersion formula with its coefficients, and caveats; with a file of "
+        "optical data "
+        "(.yml of refractiveindex.info, .agf, .csv), what a scene reads of it.\vIndices are as published, "
+        "relative to air or to vacuum; with a name the index relative to vacuum is printed as well. An "
+        "asterisk marks an index outside the measured range. --at never extrapolates. On a terminal the lines are "
+        "wrapped to "
+        "its width; output to a pipe or file is not wrapped.",
 };
-
-/* An entry of either catalogue; the other pointer is NULL. */
-typedef struct media_choice {
-    const medium *clear;
-    const metal *opaque;
-} media_choice;
 
 static status find(const media_request *request, media_choice *out, diagnostic *why)
 {
-    const size_t media = media_count(), count = media + metals_count();
+    const size_t media = media_count(), metals = media + metals_count(), count = metals + coating_designs_count();
     const char **names = calloc(count, sizeof *names);
     if (!names)
         return out_of_memory(why);
     for (size_t i = 0; i < count; i++)
-        names[i] = i < media ? media_at(i)->name : metals_at(i - media)->name;
+        names[i] = i < media    ? media_at(i)->name
+                   : i < metals ? metals_at(i - media)->name
+                                : coating_design_at(i - metals)->name;
     int which = 0;
     const status result = options_choice("media", "medium", media_usual_name(request->name), names, count, &which, why);
     if ((size_t)which < media)
         out->clear = media_at((size_t)which);
-    else
+    else if ((size_t)which < metals)
         out->opaque = metals_at((size_t)which - media);
+    else
+        out->coated = coating_design_at((size_t)which - metals);
     free(names);
     return result;
 }
@@ -106,17 +107,21 @@ static void print_all(double at_nm, int columns)
     media_rows_table(stdout, at_nm, columns);
     fputc('\n', stdout);
     metal_rows_table(stdout, at_nm, columns);
+    fputc('\n', stdout);
+    coating_rows_table(stdout, at_nm, columns);
 }
 
 static status print(const media_request *request, media_choice chosen, diagnostic *why)
 {
     if (request->json)
-        return json_print(media_rows_json(chosen.clear, chosen.opaque, request->at_nm), why);
+        return json_print(media_rows_json(chosen, request->at_nm), why);
     const int columns = terminal_columns(STDOUT_FILENO);
     if (chosen.clear)
         media_rows_details(stdout, chosen.clear, request->at_nm, columns);
     else if (chosen.opaque)
         metal_rows_details(stdout, chosen.opaque, request->at_nm, columns);
+    else if (chosen.coated)
+        coating_rows_details(stdout, chosen.coated, request->at_nm, columns);
     else
         print_all(request->at_nm, columns);
     return STATUS_OK;
@@ -140,7 +145,7 @@ static status print_file(const media_request *request, diagnostic *why)
 status command_media(int argc, char **argv, diagnostic *why)
 {
     media_request request = {0};
-    media_choice chosen = {NULL, NULL};
+    media_choice chosen = {NULL, NULL, NULL};
     TRY(command_form_read(&form, argc, argv, &request, why));
     if (request.name && strpbrk(request.name, "./"))
         return print_file(&request, why);

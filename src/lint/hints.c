@@ -148,19 +148,26 @@ static double expected_value(const material *m, size_t i)
     return value;
 }
 
+static void hint_if_inert(const scene *s, const char *owner, const char *name, const note_sink *taker)
+{
+    char path[2 * SCENE_NAME_MAX + 2];
+    inert_answer answer;
+    snprintf(path, sizeof path, "%s.%s", owner, name);
+    if (param_is_inert(s, path, NULL, &answer) && strcmp(answer.rule, "unused-material") != 0 &&
+        strcmp(answer.rule, "covered") != 0)
+        taker->take(taker->context, &answer.note);
+}
+
 static void hint_at_unseen(const scene *s, const char *owner, const material *m, const material *same_as,
                            const note_sink *taker)
 {
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const double value = expected_value(m, i);
-        char path[2 * SCENE_NAME_MAX + 2];
-        inert_answer answer;
-        snprintf(path, sizeof path, "%s.%s", owner, expected[i].name);
-        if (value > 0.0 && !(same_as && value == expected_value(same_as, i)) &&
-            param_is_inert(s, path, NULL, &answer) && strcmp(answer.rule, "unused-material") != 0 &&
-            strcmp(answer.rule, "covered") != 0)
-            taker->take(taker->context, &answer.note);
+        if (value > 0.0 && !(same_as && value == expected_value(same_as, i)))
+            hint_if_inert(s, owner, expected[i].name, taker);
     }
+    if (m->coating[0] && !(same_as && strcmp(m->coating, same_as->coating) == 0))
+        hint_if_inert(s, owner, "coating", taker);
 }
 
 /* Materials first, then solids with other values than their material. Layers show no light, so there is no hint. */
@@ -224,7 +231,10 @@ static void hint_at_vain(const scene *s, const solid *owner, const note_sink *ta
     if (m->reflectivity > 0.0 && m->transparency == 0.0 && material_is_layered(m, &s->render))
         note_report(taker, owner->name, "reflectivity", "remove it",
                     "the %s of %s determines what it reflects: its reflectivity has no effect",
-                    material_has_film(m) ? "film" : "complex index", owner->name);
+                    m->coating[0]          ? "coating"
+                    : material_has_film(m) ? "film"
+                                           : "complex index",
+                    owner->name);
 }
 
 /* With fewer samples per pixel, noise in soft shadows is obvious. */

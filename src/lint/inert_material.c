@@ -6,6 +6,8 @@
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
+#include <string.h>
+
 static inert_remedy set_on(const inert_case *c, const char *assignment)
 {
     return inert_set("%s.%s", c->name, assignment);
@@ -108,6 +110,13 @@ bool by_data(const inert_case *c)
     return replaced && inert_say(c, "by-data", inert_set("%s.%s=", c->name, by).text, "its %s replace it", by);
 }
 
+bool no_data_layer(const inert_case *c)
+{
+    return !strstr(c->m->coating, "data ") &&
+           inert_say(c, "no-data-layer", inert_set("%s.coating=data 100", c->name).text,
+                     "no layer of its coating is data");
+}
+
 bool not_turbid(const inert_case *c)
 {
     return !material_is_turbid(c->m) &&
@@ -188,13 +197,16 @@ bool nothing_reflected(const inert_case *c)
 
 static bool layered_reflectivity(const inert_case *c)
 {
-    const inert_remedy remedy = material_has_film(c->m)
+    const inert_remedy remedy = c->m->coating[0] ? inert_set("%s.coating=none", c->name)
+                                : material_has_film(c->m)
                                     ? inert_set("%s.film_thickness_nm=0 and %s.extinction=0", c->name, c->name)
                                 : material_metal(c->m) ? inert_set("%s.medium=ior", c->name)
                                                        : inert_set("%s.extinction=0", c->name);
     return c->m->transparency == 0.0 && material_is_layered(c->m, &c->s->render) &&
            inert_say(c, "layered", remedy.text, "its %s determines what it reflects",
-                     material_has_film(c->m) ? "film" : "complex index");
+                     c->m->coating[0]          ? "coating"
+                     : material_has_film(c->m) ? "film"
+                                               : "complex index");
 }
 
 bool no_reflectivity(const inert_case *c)
@@ -226,7 +238,9 @@ bool constant_weights(const inert_case *c)
     return !material_is_opaque(c->m) && scene_has_constant_weights(&c->s->render) &&
            inert_say(c, "constant", "set render.weights=fresnel and render.transmission=refract",
                      "a %s needs the Fresnel equations, and this scene has constant weights",
-                     is_named(c, "roughness") ? "rough surface" : "film");
+                     is_named(c, "roughness")                                      ? "rough surface"
+                     : is_named(c, "film_thickness_nm") || is_named(c, "film_ior") ? "film"
+                                                                                   : "coating");
 }
 
 /* A film makes a surface visible even if the solid has the index of the surroundings. */
@@ -336,8 +350,9 @@ static const char *const phong_parameters[] = {"ambient",      "diffuse", "specu
 bool unseen(const inert_case *c)
 {
     static const char *const opaque_parameters[] = {"color", "emission", NULL};
-    static const char *const mirror_parameters[] = {"reflectivity", "extinction", "medium", "film_thickness_nm",
-                                                    "film_ior",     "roughness",  NULL};
+    static const char *const mirror_parameters[] = {"reflectivity",      "extinction", "medium",
+                                                    "film_thickness_nm", "film_ior",   "coating",
+                                                    "coating_data",      "roughness",  NULL};
     const bool mirrors = is_among(c, mirror_parameters),
                reflects_only = is_among(c, phong_parameters) ||
                                (c->m->transparency == 0.0 && (is_among(c, opaque_parameters) || mirrors));

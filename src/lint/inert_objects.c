@@ -340,9 +340,10 @@ bool unused_data(const inert_case *c)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         const material *m = &one->surface;
-        if (one->visible && ((m->medium == MEDIUM_DATA && strcmp(m->medium_data, c->name) == 0) ||
-                             strcmp(m->color_data, c->name) == 0 || strcmp(m->absorb_data, c->name) == 0 ||
-                             strcmp(m->scatter_data, c->name) == 0))
+        if (one->visible &&
+            ((m->medium == MEDIUM_DATA && strcmp(m->medium_data, c->name) == 0) ||
+             strcmp(m->color_data, c->name) == 0 || strcmp(m->absorb_data, c->name) == 0 ||
+             strcmp(m->scatter_data, c->name) == 0 || (m->coating[0] && strcmp(m->coating_data, c->name) == 0)))
             return false;
         clear = one->visible && !material_is_opaque(&one->surface) ? one : clear;
     }

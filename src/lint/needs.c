@@ -36,10 +36,11 @@ static const needs_row light_rows[] = {
     NEEDS_LIGHT(BACKGROUND, "kind color horizon image rain drops sun_elevation_deg sun_azimuth_deg sky_type ambient "
                             "absorb_per_m"),
     NEEDS_LIGHT(LIGHT, "*"),
-    NEEDS_LIGHT(MATERIAL,
-                "ambient diffuse specular shininess absorb_per_m absorb_spectrum absorb_data tint_distance extinction "
-                "extraordinary_ior optic_axis film_ior sheet sheet_axis sheet_pass sheet_block retardance_deg "
-                "birefringence roughness scatter_per_m scatter_data asymmetry"),
+    NEEDS_LIGHT(
+        MATERIAL,
+        "ambient diffuse specular shininess absorb_per_m absorb_spectrum absorb_data tint_distance extinction "
+        "extraordinary_ior optic_axis film_ior coating_data sheet sheet_axis sheet_pass sheet_block retardance_deg "
+        "birefringence roughness scatter_per_m scatter_data asymmetry"),
 };
 
 static const needs_row rows[] = {
@@ -182,8 +183,10 @@ static const needs_row rows[] = {
          "absorb_per_m absorb_spectrum absorb_data scatter_per_m scatter_data asymmetry tint_distance",
          opaque_rule),
     NEEDS_SET(MATERIAL, "film_ior", "film_thickness_nm>0", "%.film_thickness_nm=300"),
+    FACT(MATERIAL, "coating_data", no_data_layer),
     FACT(MATERIAL,
-         "extraordinary_ior optic_axis film_thickness_nm film_ior sheet sheet_axis sheet_pass sheet_block "
+         "extraordinary_ior optic_axis film_thickness_nm film_ior coating coating_data sheet sheet_axis sheet_pass "
+         "sheet_block "
          "retardance_deg birefringence absorb_per_m absorb_spectrum absorb_data scatter_per_m scatter_data asymmetry "
          "tint_distance",
          mirror_rule),
@@ -192,9 +195,9 @@ static const needs_row rows[] = {
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.transmission=refract"),
     NEEDS(MATERIAL, "extraordinary_ior optic_axis", "render.weights=fresnel"),
     NEEDS_SET(MATERIAL, "optic_axis", "extraordinary_ior>0", "%.extraordinary_ior=1.7"),
-    FACT(MATERIAL, "film_thickness_nm film_ior roughness", constant_weights),
-    FACT(MATERIAL, "film_thickness_nm film_ior", film_unseen),
-    FACT(MATERIAL, "film_ior", nothing_reflected),
+    FACT(MATERIAL, "film_thickness_nm film_ior coating coating_data roughness", constant_weights),
+    FACT(MATERIAL, "film_thickness_nm film_ior coating coating_data", film_unseen),
+    FACT(MATERIAL, "film_ior coating_data", nothing_reflected),
     NEEDS_RAYS(MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence"),
     FACT(MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence", sheet_unpassed),
     NEEDS(MATERIAL, "sheet_axis", "sheet=polariser|retarder"),

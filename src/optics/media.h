@@ -29,7 +29,12 @@
     X("soda-lime")     \
     X("pmma")          \
     X("sapphire")      \
-    X("diamond")
+    X("diamond")       \
+    X("mgf2")          \
+    X("alumina")       \
+    X("hfo2")          \
+    X("ta2o5")         \
+    X("tio2")
 
 #define MEDIA_ONE(name) +1
 enum { MEDIA_COUNT = 0 MEDIA_NAMES(MEDIA_ONE) };

@@ -13,6 +13,7 @@
 #include "base/lanes.h"
 #include "optics/complex_pair.h"
 #include "optics/mueller.h"
+#include <stdbool.h>
 
 /* The square root with both parts >= 0, of z with z.im >= 0; without cancellation. */
 static inline complex_pair complex_sqrt_upper(complex_pair z)
@@ -93,19 +94,27 @@ static inline film_phase film_phase_of(complex_pair beta2, double thickness_nm, 
     return p;
 }
 
-/* Multiplies the matrices of s and p by those of one film; Born and Wolf, 1.6.2 (39) with n cos theta = beta, for p
- * with cos theta / n = beta / n^2. */
-static inline void multilayer_add(thin_film one, double sine2, double lambda_nm, characteristic *s, characteristic *p,
-                                  double *fade)
+/* The matrices of one film for both polarisations; Born and Wolf, 1.6.2 (39) with n cos theta = beta, for p with cos
+ * theta / n = beta / n^2. */
+typedef struct film_matrices {
+    characteristic s, p;
+    double fade;
+} film_matrices;
+
+static inline film_matrices film_matrices_of(thin_film one, double sine2, double lambda_nm)
 {
     const complex_pair n2 = complex_multiply(one.index, one.index), beta2 = complex_sub(n2, complex_of(sine2, 0.0));
     const film_phase f = film_phase_of(beta2, one.thickness_nm, lambda_nm);
     const complex_pair across = complex_minus_i(f.sine_over_beta), back = complex_multiply(across, beta2);
-    const characteristic of_s = {f.cosine, across, back, f.cosine};
-    const characteristic of_p = {f.cosine, complex_multiply(across, n2), complex_divide(back, n2), f.cosine};
-    *s = characteristic_product(*s, of_s);
-    *p = characteristic_product(*p, of_p);
-    *fade += f.fade;
+    const film_matrices m = {{f.cosine, across, back, f.cosine},
+                             {f.cosine, complex_multiply(across, n2), complex_divide(back, n2), f.cosine},
+                             f.fade};
+    return m;
+}
+
+static inline bool films_equal(thin_film a, thin_film b)
+{
+    return a.index.re == b.index.re && a.index.im == b.index.im && a.thickness_nm == b.thickness_nm;
 }
 
 /* The amplitudes of a stack with matrix m, Born and Wolf, 1.6.2 (47) to (50): q is n cos theta for s, cos theta / n for
@@ -130,8 +139,15 @@ static inline sp_amplitudes multilayer_amplitudes(double cos_i, double n_from, c
                                  complex_of(1.0, 0.0)};
     characteristic s = none, p = none;
     double fade = 0.0;
-    for (int i = 0; i < count; i++)
-        multilayer_add(films[i], sine2, lambda_nm, &s, &p, &fade);
+    film_matrices pair[2]; /* of the last two films: in a periodic stack they are those of all */
+    for (int i = 0; i < count; i++) {
+        film_matrices *m = &pair[i % 2];
+        if (i < 2 || !films_equal(films[i], films[i - 2]))
+            *m = film_matrices_of(films[i], sine2, lambda_nm);
+        s = characteristic_product(s, m->s);
+        p = characteristic_product(p, m->p);
+        fade += m->fade;
+    }
     const complex_pair n2 = complex_multiply(to, to),
                        beta = complex_sqrt_upper(complex_sub(n2, complex_of(sine2, 0.0)));
     const double left = elementary_exp2_inline(-log2_e * fade);

@@ -106,7 +106,7 @@ static const decision decisions[] = {
     {PARAM_MATERIAL, "reflectivity", SAID, MIRRORS},
     {PARAM_MATERIAL, "extinction medium coefficients medium_data", SAID, SAID},
     {PARAM_MATERIAL, "extraordinary_ior optic_axis", CRYSTALS, CRYSTALS},
-    {PARAM_MATERIAL, "film_thickness_nm film_ior", FILMS, FILMS},
+    {PARAM_MATERIAL, "film_thickness_nm film_ior coating coating_data", FILMS, FILMS},
     {PARAM_MATERIAL, "sheet sheet_axis sheet_pass sheet_block retardance_deg birefringence", SHEETS, SHEETS},
     {PARAM_MATERIAL, "roughness", SMOOTH, SAID},
     {PARAM_MATERIAL, "absorb_per_m absorb_spectrum absorb_data tint_distance", SAID, SAID},
@@ -254,6 +254,5 @@ double export_gap(const solid_shape *a, const solid_shape *b)
 vec3 export_layered_color(const export_work *w, int r)
 {
     const layered_plan *l = w->p->layered;
-    const vec3 c = layered_color(l->surface[r], 1.0, w->p->ior[0], w->p->ior[r]);
-    return vec3_make(fmin(fmax(c.x, 0.0), 1.0), fmin(fmax(c.y, 0.0), 1.0), fmin(fmax(c.z, 0.0), 1.0));
+    return layered_colors_at(l->surface[r], NULL, true, 1.0, w->p->ior[0], w->p->ior[r]).reflected;
 }

@@ -362,22 +362,113 @@ static json_t *metal_json(const metal *m, double at_nm)
     return json_if(o, bad == 0);
 }
 
-/* --- both --- */
+/* --- coatings --- */
 
-json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm)
+static const double coating_nm[] = {450.0, 500.0, 550.0, 600.0, 650.0};
+enum { COATING_LINES = sizeof coating_nm / sizeof *coating_nm };
+
+typedef struct coating_powers {
+    double R, T;
+} coating_powers;
+
+/* Of unpolarised light at an angle from air, on bk7. */
+static coating_powers coating_powers_at(const coating_design *d, double angle_deg, double lambda_nm)
 {
-    const bool all = !only && !only_metal;
-    json_t *list = json_array(), *metals = json_array();
+    coating_layers layers;
+    film_stack stack;
+    thin_film films[FILMS_MAX];
+    const double cosine = cos(angle_deg * 0.017453292519943295769), glass = medium_index(media_find("bk7"), lambda_nm);
+    if (coating_parse(d->name, &layers, NULL) != STATUS_OK)
+        return (coating_powers){(double)NAN, (double)NAN};
+    film_stack_make((thin_film){{1.0, 0.0}, 0.0}, &layers, NULL, false, &stack);
+    const int count = film_stack_films(&stack, lambda_nm, true, films);
+    const sp_amplitudes a = multilayer_amplitudes(cosine, medium_index(media_at(0), lambda_nm), films, count,
+                                                  complex_of(glass, 0.0), lambda_nm);
+    return (coating_powers){0.5 * (complex_norm2(a.r_s) + complex_norm2(a.r_p)),
+                            0.5 * (complex_norm2(a.t_s) + complex_norm2(a.t_p))};
+}
+
+void coating_rows_table(FILE *stream, double at_nm, int columns)
+{
+    char cells[CELLS_MAX] = "";
+    put(cells, "%-18s", "name");
+    for (int i = 0; i < COATING_LINES; i++)
+        put(cells, "  R_%-4.0f", coating_nm[i]);
+    put(cells, at_nm > 0.0 ? "  R_at  " : "");
+    put(cells, "  ");
+    wrap_row(stream, columns, cells, "coating");
+    for (size_t k = 0; k < coating_designs_count(); k++) {
+        const coating_design *d = coating_design_at(k);
+        cells[0] = 0;
+        put(cells, "%-18s", d->name);
+        for (int i = 0; i < COATING_LINES; i++)
+            put(cells, "  %.4f", coating_powers_at(d, 0.0, coating_nm[i]).R);
+        if (at_nm > 0.0)
+            put(cells, "  %.4f", coating_powers_at(d, 0.0, at_nm).R);
+        put(cells, "  ");
+        wrap_row(stream, columns, cells, "%s", d->title);
+    }
+}
+
+static void print_powers(FILE *stream, const coating_design *d, const char *name, double lambda_nm, int columns)
+{
+    char at[NUMBER_TEXT_MAX], start[LABEL_WIDTH + 1];
+    const coating_powers ahead = coating_powers_at(d, 0.0, lambda_nm), aslant = coating_powers_at(d, 45.0, lambda_nm);
+    wrap_row(stream, columns, label(name, start), "R %.5f and T %.5f at %s nm; at 45 degrees %.5f and %.5f", ahead.R,
+             ahead.T, number_format(lambda_nm, at), aslant.R, aslant.T);
+}
+
+void coating_rows_details(FILE *stream, const coating_design *d, double at_nm, int columns)
+{
+    char start[LABEL_WIDTH + 1];
+    wrap_row(stream, columns, label("name", start), "%s", d->name);
+    wrap_row(stream, columns, label("coating", start), "%s", d->title);
+    wrap_row(stream, columns, label("layers", start), "%s", d->layers);
+    for (int i = 0; i < COATING_LINES; i++)
+        print_powers(stream, d, i == 0 ? "on bk7 in air" : "", coating_nm[i], columns);
+    if (at_nm > 0.0)
+        print_powers(stream, d, "at", at_nm, columns);
+    wrap_row(stream, columns, label("source", start), "%s", d->source);
+}
+
+static json_t *coating_at_json(const coating_design *d, double lambda_nm)
+{
+    const coating_powers p = coating_powers_at(d, 0.0, lambda_nm);
+    return json_pack("{s:o,s:o,s:o}", "lambda_nm", json_of_real(lambda_nm), "R", json_of_real(p.R), "T",
+                     json_of_real(p.T));
+}
+
+static json_t *coating_json(const coating_design *d, double at_nm)
+{
+    json_t *powers = json_array();
+    for (int i = 0; i < COATING_LINES; i++)
+        json_add(&powers, coating_at_json(d, coating_nm[i]));
+    if (at_nm > 0.0)
+        json_add(&powers, coating_at_json(d, at_nm));
+    return json_pack("{s:s,s:s,s:s,s:o,s:s}", "name", d->name, "title", d->title, "layers", d->layers, "on_bk7", powers,
+                     "source", d->source);
+}
+
+/* --- all --- */
+
+json_t *media_rows_json(media_choice only, double at_nm)
+{
+    const bool all = !only.clear && !only.opaque && !only.coated;
+    json_t *list = json_array(), *metals = json_array(), *coatings = json_array();
     for (size_t i = 0; i < media_count() && list; i++)
-        if (all || only == media_at(i))
+        if (all || only.clear == media_at(i))
             json_add(&list, medium_json(media_at(i), at_nm));
     for (size_t i = 0; i < metals_count() && metals; i++)
-        if (all || only_metal == metals_at(i))
+        if (all || only.opaque == metals_at(i))
             json_add(&metals, metal_json(metals_at(i), at_nm));
-    if (list && metals)
-        return json_pack("{s:i,s:o,s:o}", "schema", 1, "media", list, "metals", metals);
+    for (size_t i = 0; i < coating_designs_count() && coatings; i++)
+        if (all || only.coated == coating_design_at(i))
+            json_add(&coatings, coating_json(coating_design_at(i), at_nm));
+    if (list && metals && coatings)
+        return json_pack("{s:i,s:o,s:o,s:o}", "schema", 1, "media", list, "metals", metals, "coatings", coatings);
     json_decref(list);
     json_decref(metals);
+    json_decref(coatings);
     return NULL;
 }
 

@@ -1,7 +1,8 @@
-/* The catalogues of media and metals as tables, one entry in detail, or JSON. at_nm is a further wavelength; 0: none.
+/* The catalogues of media, metals and coatings as tables, one entry in detail, or JSON. at_nm is a further wavelength; 0: none.
  * Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them. */
 #pragma once
 
+#include "optics/coating.h"
 #include "optics/media.h"
 #include "optics/optical_data.h"
 #include <jansson.h>
@@ -25,8 +26,19 @@ char *metal_range_text(const metal *m, char text[METAL_RANGE_MAX]);
 void metal_rows_table(FILE *stream, double at_nm, int columns);
 void metal_rows_details(FILE *stream, const metal *m, double at_nm, int columns);
 
-/* The given medium or metal, or both catalogues if both are NULL. Returns NULL when out of memory. */
-json_t *media_rows_json(const medium *only, const metal *only_metal, double at_nm);
+/* Designs of coatings, with their reflectance in air on bk7. */
+void coating_rows_table(FILE *stream, double at_nm, int columns);
+void coating_rows_details(FILE *stream, const coating_design *d, double at_nm, int columns);
+
+/* An entry of a catalogue; the other pointers are NULL. */
+typedef struct media_choice {
+    const medium *clear;
+    const metal *opaque;
+    const coating_design *coated;
+} media_choice;
+
+/* The given entry, or all catalogues if there is none. Returns NULL when out of memory. */
+json_t *media_rows_json(media_choice only, double at_nm);
 
 /* Data from a file in detail, or as JSON, with the law of n, or NULL. */
 void data_rows_details(FILE *stream, const char *file, const optical_data *d, double at_nm, int columns);

@@ -92,8 +92,9 @@ status param_rows_print(FILE *stream, const scene *s, const char *filter, int co
 }
 
 static const char *const type_names[] = {
-    [PARAM_INT] = "integer", [PARAM_REAL] = "real", [PARAM_CHOICE] = "choice", [PARAM_VECTOR] = "vector",
-    [PARAM_COLOR] = "color", [PARAM_LIST] = "list", [PARAM_PATH] = "path",     [PARAM_WORD] = "name",
+    [PARAM_INT] = "integer",   [PARAM_REAL] = "real",   [PARAM_CHOICE] = "choice",
+    [PARAM_VECTOR] = "vector", [PARAM_COLOR] = "color", [PARAM_LIST] = "list",
+    [PARAM_PATH] = "path",     [PARAM_WORD] = "name",   [PARAM_LAYERS] = "layers",
 };
 
 static json_t *choices(const param *row)
@@ -148,7 +149,8 @@ static json_t *line_json(const param_line *l, bool has_value, const json_t *init
 {
     const param *row = l->row;
     const char *first = initial_of(initial, l);
-    bool bounded = row->type != PARAM_CHOICE && row->type != PARAM_PATH && row->type != PARAM_WORD;
+    bool bounded =
+        row->type != PARAM_CHOICE && row->type != PARAM_PATH && row->type != PARAM_WORD && row->type != PARAM_LAYERS;
     char range[PARAM_PATH_MAX];
     json_t *o = json_object();
     int bad = json_object_set_new(o, "path", json_of_text(l->path));

@@ -52,7 +52,8 @@ json_t *report_value(const param *row, const char *text)
     }
     case PARAM_CHOICE:
     case PARAM_PATH:
-    case PARAM_WORD: break;
+    case PARAM_WORD:
+    case PARAM_LAYERS: break;
     }
     return json_of_text(text);
 }

@@ -309,10 +309,14 @@ check "media has n_d, n_F, n_C, Abbe's number, range, temperature, reference and
     grep -qE '^bk7 +1\.51680 +1\.52238 +1\.51432 +64\.17 +300\.\.2500 +20 +air +Schott' out
 check "media marks extrapolated indices" grep -qE '^glycerol +1\.47227\* +1\.47683\* +1\.46991 +68\.30\* ' out
 check "media has no Abbe's number without dispersion" grep -qE '^olive-oil .* - +589\.3 ' out
-check "media: one line each, a blank one before the metals" is \
-    "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "22 22"
+check "media: one line each, a blank one before metals and coatings" is \
+    "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "41 39"
 check "media has n, k and reflectance of metals, range and source" \
     grep -qE '^gold +0\.2774 +2\.9274 +1\.1476 +1\.8394 .* 0\.891 +367\.9\.\.821\.1 +Johnson' out
+check "media has the reflectance of coatings" grep -qE '^ar-550 +0\.0162 .* one quarter-wave layer' out
+run media mirror-550 --json
+check "media of a coating has its layers and powers" \
+    is "$(json coatings.0.layers media)" "$(lines '10x(tio2 550/4, fused-silica 550/4)' '[]')"
 run media --at 500
 check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
 check "media --at leaves out media that were not measured there" grep -qE '^glycerol .* - +589' out

@@ -50,6 +50,11 @@ static void indices_at_spectral_lines_and_abbe_numbers_equal_computed_values(voi
         {"pmma", 1.49252744, 1.49836316, 1.49006681, 59.3668},
         {"sapphire", 1.76817209, 1.77550751, 1.76488399, 72.3086},
         {"diamond", 2.41748587, 2.43553792, 2.40990556, 55.3006},
+        {"mgf2", 1.37774392, 1.38019898, 1.37664266, 106.2176},
+        {"alumina", 1.67982114, 1.68841101, 1.67611230, 55.2758},
+        {"hfo2", 1.89805730, 1.91195863, 1.89270787, 46.6505},
+        {"ta2o5", 2.14623770, 2.18339966, 2.13125425, 21.9816},
+        {"tio2", 2.41165235, 2.49689622, 2.37994132, 12.0701},
     };
     assert_int_equal(COUNT(expected) + 1, media_count()); /* olive oil has no dispersion */
     for (size_t k = 0; k < COUNT(expected); k++) {

@@ -443,9 +443,9 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"glass.radius=2",
          "glass has no parameter 'radius'; glass has color, color_data, ambient, diffuse, specular, shininess, "
          "emission, reflectivity, transparency, ior, extinction, medium, coefficients, medium_data, extraordinary_ior, "
-         "optic_axis, film_thickness_nm, film_ior, sheet, sheet_axis, sheet_pass, sheet_block, retardance_deg, "
-         "birefringence, roughness, absorb_per_m, absorb_spectrum, absorb_data, scatter_per_m, scatter_data, "
-         "asymmetry, "
+         "optic_axis, film_thickness_nm, film_ior, coating, coating_data, sheet, sheet_axis, sheet_pass, sheet_block, "
+         "retardance_deg, "
+         "birefringence, roughness, absorb_per_m, absorb_spectrum, absorb_data, scatter_per_m, "
          "..."},
         {"lamp.position.w=2", "lamp.position has no element 'w'; the elements are .x, .y and .z"},
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},

@@ -472,7 +472,7 @@ static void invalid_media_are_refused_with_a_location(void **state)
         "sellmeier, cauchy, "
         "table, data, air, "
         "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
-        "sapphire, diamond, silver, gold, copper, aluminium");
+        "sapphire, diamond, mgf2, alumina, hfo2, ta2o5, tio2, silver, gold, copper, aluminium");
     expect_error("solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",
                  "test.yaml:2:3: a: absorb_spectrum is not a list of pairs of wavelength and coefficient; "
                  "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]");

@@ -122,28 +122,38 @@ static void append_child(ray_tree *tree, int parent, size_t child)
 }
 
 /* The factors of radiance from behind the interface. Simple transmission does not refract, so the indices do not
- * matter. */
-static void read_gain(const probe *p, ray_hit *h)
+ * matter. absorbed: the fraction that stays in the surface's layers. */
+static void read_gain(const probe *p, double absorbed, ray_hit *h)
 {
     const render_settings *r = &p->frame_plan->render;
     const material *m = &p->rays->surface.mat->surface;
     if (h->opaque || h->tir)
         return;
-    h->T = m->transparency * (scene_has_constant_weights(r) ? 1.0 : 1.0 - h->R);
+    h->T = m->transparency * (scene_has_constant_weights(r) ? 1.0 : 1.0 - h->R - absorbed);
     const double ratio = r->transmission == TRANSMISSION_SIMPLE ? 1.0 : h->n_from / h->n_to;
     h->gain_classic = h->T;
     h->gain_basic = ratio * ratio * h->T;
 }
 
-/* The reflectances of a metal or a thin film, at render.lambda_nm. */
-static void read_layers(const probe *p, ray_hit *h)
+/* The reflectances of a metal or of layers, at render.lambda_nm, and what the layers absorb. */
+typedef struct layer_losses {
+    double s, p, mean;
+} layer_losses;
+
+static layer_losses read_layers(const probe *p, ray_hit *h)
 {
+    const layered_work *w = p->rays->layered;
+    const bool absorbs = w->surface->stack && w->surface->stack->absorbs;
     const sp_amplitudes a =
-        layered_amplitudes(p->rays->layered->surface, h->cos_i, h->n_from, h->n_to, p->frame_plan->render.lambda_nm);
-    if (h->tir && !h->opaque)
-        return;
+        layered_amplitudes(w->surface, w->inward[0], h->cos_i, h->n_from, h->n_to, p->frame_plan->render.lambda_nm);
+    if (h->tir && !h->opaque && !absorbs)
+        return (layer_losses){0.0, 0.0, 0.0};
     h->R_s = complex_norm2(a.r_s), h->R_p = complex_norm2(a.r_p);
     h->R = 0.5 * (h->R_s + h->R_p);
+    if (h->opaque || !absorbs)
+        return (layer_losses){0.0, 0.0, 0.0};
+    const double s = 1.0 - h->R_s - complex_norm2(a.t_s), of_p = 1.0 - h->R_p - complex_norm2(a.t_p);
+    return (layer_losses){s, of_p, 0.5 * (s + of_p)};
 }
 
 /* The fraction of this ray's light that a crystal's surface reflects. cos_t remains the ordinary ray's. */
@@ -194,10 +204,12 @@ static bool read_hit(const probe *p, ray_node *node)
     h->face = is_mesh_face(s->face[0])
                   ? (int)instance_set_triangle(geometry->meshes, s->face[0])
                   : (int)(s->face[0] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
+    layer_losses lost = {0.0, 0.0, 0.0};
     if (surface_is_layered(t))
-        read_layers(p, h);
+        lost = read_layers(p, h);
     const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->frame_plan->render);
-    h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
+    h->R_s += (1.0 - h->R_s - lost.s) * coating, h->R_p += (1.0 - h->R_p - lost.p) * coating,
+        h->R += (1.0 - h->R - lost.mean) * coating;
     if (opaque) {
         if (!surface_is_layered(t))
             h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
@@ -211,7 +223,7 @@ static bool read_hit(const probe *p, ray_node *node)
     }
     if (crystals_meet(t, 0) && !opaque)
         read_crystal(t, h);
-    read_gain(p, h);
+    read_gain(p, lost.mean, h);
     h->path_length_m = h->t * p->frame_plan->render.unit_m;
     for (int c = 0; c < 3; c++)
         h->transmittance[c] = geometry->attenuates ? t->media->transmittance[c][0] : 1.0;

@@ -327,6 +327,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     const double both = m->reflectivity + m->transparency;
     other->reflectivity = scene_has_constant_weights(&s->render) && both < 1.0 ? both : 1.0;
     other->transparency = other->extinction = other->film_thickness_nm = 0.0;
+    other->coating[0] = 0;
     return other;
 }
 

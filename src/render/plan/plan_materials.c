@@ -59,7 +59,9 @@ bool region_shadow_transmittance(const scene *s, const solid *owner, double *lea
 {
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
     *by_slot = NULL;
-    *least = owner->surface.transparency * (1.0 - material_coating(&owner->surface, &s->render));
+    const material *m = &owner->surface;
+    const double layers = material_is_layered(m, &s->render) ? material_layers_pass(m) : 1.0;
+    *least = m->transparency * (1.0 - material_coating(m, &s->render)) * layers;
     if (slots == 0)
         return true;
     if (!(*by_slot = calloc((size_t)slots, sizeof **by_slot)))

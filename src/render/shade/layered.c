@@ -30,10 +30,13 @@ void layered_gather(tracer *t, const int *list, int priority_index)
         return;
     w->colored = layered->curves && !layered->one_wavelength;
     const int inner = layered->medium[priority_index];
+    for (int k = 0; k < t->surface.gathered.count; k++)
+        w->inward[k] = w->surface->opaque || t->batch.hits.after[list[k]] == t->batch.hits.surface[list[k]];
     for (int k = 0; w->colored && k < t->surface.gathered.count; k++) {
         const int before = layered->medium[t->batch.hits.before[list[k]]],
                   after = layered->medium[t->batch.hits.after[list[k]]];
-        w->curve[k] = layered_curve_of(layered, priority_index, w->surface->opaque || before != inner ? before : after);
+        w->curves[k] =
+            layered_curves_of(layered, priority_index, w->surface->opaque || before != inner ? before : after);
     }
 }
 
@@ -50,17 +53,12 @@ static void branch_by_color(tracer *t, const material *m, double coating, int k)
     layered_work *w = t->layered;
     branch_group *b = &t->surface.branches;
     const double cos_i = g->points.cos_i[k];
-    const fresnel f = fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]);
-    const bool opaque = w->surface->opaque, from_dense = !opaque && g->n_from[k] > g->n_to[k];
-    const double low = from_dense ? g->n_to[k] : g->n_from[k], high = from_dense ? g->n_from[k] : g->n_to[k],
-                 cosine = from_dense ? f.cos_t : cos_i;
-    vec3 R = vec3_make(1.0, 1.0, 1.0);
-    if (opaque || !f.total)
-        R = w->curve[k]->by_ray ? layered_color(w->surface, cosine, low, high) : layered_curve_at(w->curve[k], cosine);
-    const vec3 T = opaque ? vec3_make(0.0, 0.0, 0.0)
-                          : vec3_scale(vec3_sub(vec3_make(1.0, 1.0, 1.0), R), m->transparency * (1.0 - coating));
+    const bool opaque = w->surface->opaque;
+    const layered_colors c = layered_colors_at(w->surface, w->curves[k], w->inward[k], cos_i, g->n_from[k], g->n_to[k]);
+    const vec3 R = c.reflected, rest = c.transmitted,
+               T = opaque ? rest : vec3_scale(rest, m->transparency * (1.0 - coating));
     const double back = opaque ? 0.0 : coating;
-    w->rr[k] = R.x + (1.0 - R.x) * back, w->rg[k] = R.y + (1.0 - R.y) * back, w->rb[k] = R.z + (1.0 - R.z) * back;
+    w->rr[k] = R.x + rest.x * back, w->rg[k] = R.y + rest.y * back, w->rb[k] = R.z + rest.z * back;
     w->tr[k] = T.x, w->tg[k] = T.y, w->tb[k] = T.z;
     b->reflect[k] = (w->rr[k] + w->rg[k] + w->rb[k]) / 3.0;
     b->refract[k] = (T.x + T.y + T.z) / 3.0;
@@ -72,14 +70,16 @@ static void branch_at_wavelength(tracer *t, const material *m, double coating, i
     const layered_surface *s = t->layered->surface;
     branch_group *b = &t->surface.branches;
     const double cos_i = g->points.cos_i[k];
-    const sp_amplitudes a = layered_amplitudes(s, cos_i, g->n_from[k], g->n_to[k], wavelength_of(t, k));
-    const bool total = !s->opaque && fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]).total;
-    const sp_response r = sp_response_of(a.r_s, a.r_p);
-    const double R = total ? 1.0 : lesser(r.mean, 1.0);
-    b->reflect[k] = s->opaque ? R : R + (1.0 - R) * coating;
-    b->refract[k] = s->opaque ? 0.0 : m->transparency * (1.0 - R) * (1.0 - coating);
+    const sp_amplitudes a =
+        layered_amplitudes(s, t->layered->inward[k], cos_i, g->n_from[k], g->n_to[k], wavelength_of(t, k));
+    const bool absorbs = s->stack && s->stack->absorbs,
+               total = !s->opaque && fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]).total;
+    const sp_response r = sp_response_of(a.r_s, a.r_p), through = sp_response_of(a.t_s, a.t_p);
+    const double R = total && !absorbs ? 1.0 : lesser(r.mean, 1.0), T = absorbs ? through.mean : 1.0 - R;
+    b->reflect[k] = s->opaque ? R : R + T * coating;
+    b->refract[k] = s->opaque ? 0.0 : m->transparency * T * (1.0 - coating);
     if (t->target.frame_plan->render.polarisation)
-        polarised_layered(t, k, r, sp_response_of(a.t_s, a.t_p), coating, m->transparency);
+        polarised_layered(t, k, r, through, coating, m->transparency);
 }
 
 void layered_branches(tracer *t, const material *m)
@@ -123,9 +123,9 @@ vec3 layered_mean(const tracer *t, int k)
         const double cosine = sqrt((i + 0.5) / SQUARES);
         vec3 R;
         if (w->colored)
-            R = w->curve[k]->by_ray ? layered_color(s, cosine, n_from, n_to) : layered_curve_at(w->curve[k], cosine);
+            R = layered_colors_at(s, w->curves[k], w->inward[k], cosine, n_from, n_to).reflected;
         else {
-            const sp_amplitudes a = layered_amplitudes(s, cosine, n_from, n_to, wavelength_of(t, k));
+            const sp_amplitudes a = layered_amplitudes(s, w->inward[k], cosine, n_from, n_to, wavelength_of(t, k));
             const double mean = lesser(sp_response_of(a.r_s, a.r_p).mean, 1.0);
             R = vec3_make(mean, mean, mean);
         }

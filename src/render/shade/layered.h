@@ -7,8 +7,9 @@
 /* The layered surface of the gathered group, and its branches' weights. */
 typedef struct layered_work {
     const layered_surface *surface; /* NULL: an ordinary surface */
-    bool colored; /* the branches have weights by channel; otherwise only the weights of branch_group */
-    const layered_curve *curve[ROW];
+    bool colored;     /* the branches have weights by channel; otherwise only the weights of branch_group */
+    bool inward[ROW]; /* the ray meets the layers from outside of the solid */
+    const layered_curves *curves[ROW];
     /* Weights of reflection and refraction by channel; their means are the weights of branch_group. */
     double rr[ROW], rg[ROW], rb[ROW], tr[ROW], tg[ROW], tb[ROW];
 } layered_work;

@@ -76,7 +76,8 @@ static status read_expect_word(const scene_reader *r, const node *n, const char 
 
 static status check_value_kind(const scene_reader *r, const param *row, const char *path, const node *value)
 {
-    bool vector = row->type == PARAM_VECTOR || row->type == PARAM_COLOR || row->type == PARAM_LIST;
+    bool vector =
+        row->type == PARAM_VECTOR || row->type == PARAM_COLOR || row->type == PARAM_LIST || row->type == PARAM_LAYERS;
     bool number = row->type == PARAM_INT || row->type == PARAM_REAL;
     if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector)) {
         char remedy[420];

@@ -288,8 +288,9 @@ static status check_colors(const scene *s, const solid *owner, diagnostic *why)
 #define FRACTION_MOST 1.05
 static status check_data_of(const scene *s, const material *m, const char *owner, diagnostic *why)
 {
-    const char *const names[] = {m->medium_data, m->color_data, m->absorb_data, m->scatter_data};
-    const optical_data *const values[] = {NULL, m->color_values, m->absorb_values, m->scatter_values}; /* of curves */
+    const char *const names[] = {m->medium_data, m->color_data, m->absorb_data, m->scatter_data, m->coating_data};
+    const optical_data *const values[] = {NULL, m->color_values, m->absorb_values, m->scatter_values,
+                                          m->coating_values}; /* of curves */
     double least, most = 0.0;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (names[i][0] && object_find(s, PARAM_DATA, names[i]) < 0)
@@ -359,6 +360,12 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
     return STATUS_OK;
 }
 
+static const char *layer_remedy(const char *first, const char *film, char remedy[120])
+{
+    snprintf(remedy, 120, "%s, or %s", first, film);
+    return remedy;
+}
+
 /* Refuses combinations with metals and films that the renderer does not support. */
 static status check_layers(const scene *s, const solid *owner, diagnostic *why)
 {
@@ -369,7 +376,9 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
                         "%.80s: %s is a metal, and not transparent", owner->name, material_medium_name(m));
     if (!owner->visible || !material_is_layered(m, r))
         return STATUS_OK;
-    const char *what = material_has_film(m) ? "a film" : "a metal";
+    const char *what = m->coating[0] ? "a coating" : material_has_film(m) ? "a film" : "a metal";
+    const char *film = m->coating[0] ? "its coating to none" : "its film_thickness_nm to 0";
+    char remedy[120];
     if (m->alpha != ALPHA_OPAQUE)
         return diagnose(why, STATUS_BAD_INPUT, "set its alpha to opaque", "%.80s: alpha cannot remove a part of %s",
                         owner->name, what);
@@ -380,11 +389,11 @@ static status check_layers(const scene *s, const solid *owner, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "set render.spectrum to spectral, or render.polarisation to off",
                         "%.80s: polarisation by %s depends on the wavelength", owner->name, what);
     if (integrator_traits_of(r)->drawn && !material_is_opaque(m))
-        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or its film_thickness_nm to 0",
-                        "%.80s: the depth buffer does not support a film on a transparent solid", owner->name);
+        return diagnose(why, STATUS_BAD_INPUT, layer_remedy("set render.integrator to whitted", film, remedy),
+                        "%.80s: the depth buffer does not support %s on a transparent solid", owner->name, what);
     if (scene_has_basic_radiance(r) && !scene_has_caustics(r) && !material_is_opaque(m)) /* shadow rays have no film */
-        return diagnose(why, STATUS_BAD_INPUT, "set render.radiance to classic, or its film_thickness_nm to 0",
-                        "%.80s: basic radiance does not support a film on a transparent solid", owner->name);
+        return diagnose(why, STATUS_BAD_INPUT, layer_remedy("set render.radiance to classic", film, remedy),
+                        "%.80s: basic radiance does not support %s on a transparent solid", owner->name, what);
     return STATUS_OK;
 }
 
@@ -395,7 +404,8 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
         const material *named;
         const face_material *given;
         face_material_source(s, owner, slot, &named, &given);
-        if (named && (material_metal(named) || named->extinction > 0.0 || named->film_thickness_nm > 0.0))
+        if (named &&
+            (material_metal(named) || named->extinction > 0.0 || named->film_thickness_nm > 0.0 || named->coating[0]))
             return diagnose(why, STATUS_BAD_INPUT, "give the solid a material",
                             "%.80s: a metal or a film cannot cover only some faces of a mesh", owner->name);
     }
@@ -457,6 +467,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(material_absorption_check(&owner->surface, owner->name, why));
     TRY(sheet_check(&owner->surface, owner->name, why));
     TRY(material_crystal_check(&owner->surface, owner->name, why));
+    TRY(material_coating_check(&owner->surface, owner->name, why));
     TRY(check_layers(s, owner, why));
     TRY(check_face_layers(s, owner, why));
     TRY(check_scattering(s, owner, why));

@@ -16,6 +16,9 @@ typedef struct number_list {
 /* Maximum length of names in scene files, in bytes. */
 enum { SCENE_NAME_MAX = 63 };
 
+/* Maximum length of the text of a coating (optics/coating.h), in bytes. */
+enum { COATING_MAX = 255 };
+
 enum { SCENE_MATERIALS_MAX = 256 };
 
 /* What the alpha of a texture means (glTF 2.0, 3.9.4), on an opaque solid:
@@ -42,7 +45,11 @@ typedef struct material {
     double extraordinary_ior; /* of a uniaxial crystal, for the field along its optic axis; 0: isotropic */
     vec3 optic_axis;          /* in the solid's own frame, of any length */
     double extinction;        /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */
-    double film_thickness_nm, film_ior;   /* of a film on the surface; thickness 0: none */
+    double film_thickness_nm, film_ior;    /* of a film on the surface; thickness 0: none */
+    char coating[COATING_MAX + 1];         /* layers below the film, or a design (optics/coating.h); "" for none */
+    char coating_data[SCENE_NAME_MAX + 1]; /* data of its layers `data`; "" for none */
+    const optical_data *coating_values;    /* as index_data */
+    bool coating_in_air;
     double roughness;                     /* alpha of optics/microfacet.h, for random paths; 0: smooth */
     int64_t sheet;                        /* see scene/model/medium.h; of a transparent solid */
     vec3 sheet_axis;                      /* in the solid's own frame, of any length */

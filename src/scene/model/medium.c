@@ -2,15 +2,19 @@
 #include "scene/model/medium.h"
 #include "base/lanes.h"
 #include "base/number.h"
+#include "optics/coating.h"
 #include "optics/media.h"
 #include "scene/model/scene.h"
 
+#include <assert.h>
 #include <float.h>
 #include <string.h>
 
 #define NAME(name) name,
 const char *const medium_words[] = {"ior",   "sellmeier", "cauchy",
                                     "table", "data",      MEDIA_NAMES(NAME) METAL_NAMES(NAME) NULL};
+static_assert((int)COATING_MAX == (int)COATING_TEXT_MAX, "a material holds every text of a coating");
+
 const char *const surrounding_words[] = {"ior", MEDIA_NAMES(NAME) NULL};
 
 static index_law law_of_catalogue(int64_t at)
@@ -174,7 +178,54 @@ static bool material_is_conductor(const material *m)
 
 bool material_has_film(const material *m)
 {
-    return m->film_thickness_nm > 0.0 && !material_is_mirror(m);
+    return (m->film_thickness_nm > 0.0 || m->coating[0]) && !material_is_mirror(m);
+}
+
+/* The table of parameters accepts only coatings that can be parsed. */
+void material_film_stack(const material *m, film_stack *out)
+{
+    coating_layers layers;
+    const bool coated = m->coating[0] && coating_parse(m->coating, &layers, NULL) == STATUS_OK;
+    const thin_film film = {complex_of(m->film_ior, 0.0), m->film_thickness_nm};
+    film_stack_make(film, coated ? &layers : NULL, m->coating_values, m->coating_in_air, out);
+}
+
+bool material_films_match(const material *a, const material *b)
+{
+    return a->film_thickness_nm == b->film_thickness_nm && a->film_ior == b->film_ior &&
+           strcmp(a->coating, b->coating) == 0 && a->coating_values == b->coating_values &&
+           a->coating_in_air == b->coating_in_air;
+}
+
+double material_layers_pass(const material *m)
+{
+    const double channel_nm[] = CHANNEL_LAMBDA_NM;
+    film_stack stack;
+    index_law law;
+    double sum = 0.0;
+    if (!m->coating[0] || material_index_law(m, "", &law, NULL) != STATUS_OK)
+        return 1.0;
+    material_film_stack(m, &stack);
+    for (int c = 0; c < 3; c++) {
+        thin_film films[FILMS_MAX];
+        const int count = film_stack_films(&stack, channel_nm[c], true, films);
+        const complex_pair behind = complex_of(index_law_at(&law, channel_nm[c]), 0.0);
+        const sp_amplitudes a = multilayer_amplitudes(1.0, 1.0, films, count, behind, channel_nm[c]);
+        sum += complex_norm2(a.t_s) / 3.0;
+    }
+    return lesser(sum, 1.0);
+}
+
+status material_coating_check(const material *m, const char *label, diagnostic *why)
+{
+    coating_layers layers;
+    if (!m->coating[0])
+        return STATUS_OK;
+    TRY(coating_parse(m->coating, &layers, why));
+    if (coating_needs_data(&layers) && !m->coating_data[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set coating_data to the name of one of the scene's data",
+                        "%.80s: a layer of its coating is data, but coating_data is not set", label);
+    return STATUS_OK;
 }
 
 bool material_is_layered(const material *m, const render_settings *r)
@@ -221,14 +272,16 @@ status material_crystal_check(const material *m, const char *label, diagnostic *
         return diagnose(why, STATUS_BAD_INPUT, "set it to a vector in the solid's frame, such as 0,1,0",
                         "%.80s: the optic_axis has no direction", label);
     const char *extra = m->reflectivity > 0.0        ? "reflectivity"
+                        : m->coating[0]              ? "coating"
                         : m->film_thickness_nm > 0.0 ? "film_thickness_nm"
                         : m->sheet != 0              ? "sheet"
                                                      : NULL;
     if (!extra)
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
-                    m->sheet != 0 ? "set its sheet to none, or its extraordinary_ior to 0"
-                                  : "set it to 0, or its extraordinary_ior to 0",
+                    m->coating[0]   ? "set its coating to none, or its extraordinary_ior to 0"
+                    : m->sheet != 0 ? "set its sheet to none, or its extraordinary_ior to 0"
+                                    : "set it to 0, or its extraordinary_ior to 0",
                     "%.80s: a crystal has no %s", label, extra);
 }
 

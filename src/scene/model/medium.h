@@ -50,7 +50,18 @@ bool material_is_opaque(const material *m);
 
 /* The metal of the material's medium, or NULL. */
 const struct metal *material_metal(const material *m);
+/* Whether the surface has a film or a coating. */
 bool material_has_film(const material *m);
+struct film_stack; /* optics/coating.h */
+/* Fills *out with the layers of a material that material_has_film. */
+void material_film_stack(const material *m, struct film_stack *out);
+/* Whether two materials have equal layers. */
+bool material_films_match(const material *a, const material *b);
+/* The mean transmittance of the layers over the channels of an rgb film at normal incidence, from air into the material;
+ * 1 if only a single film is there, whose loss shadow rays do not have. */
+double material_layers_pass(const material *m);
+/* STATUS_BAD_INPUT if a layer of the coating needs data that the material does not name. */
+status material_coating_check(const material *m, const char *label, diagnostic *why);
 /* Whether the surface reflects and transmits by optics/multilayer.h: it is a metal, or has a film. A film on a
  * transparent surface needs Fresnel weights. */
 bool material_is_layered(const material *m, const render_settings *r);

@@ -34,7 +34,8 @@ typedef enum param_type {
     PARAM_COLOR,
     PARAM_LIST,
     PARAM_PATH,
-    PARAM_WORD
+    PARAM_WORD,
+    PARAM_LAYERS
 } param_type;
 
 /* The useful part of a range, for a slider. */

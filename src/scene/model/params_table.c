@@ -498,7 +498,7 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, emission, "", 0, BRIGHT, "0",
          "k_e of the Phong model: the surface emits k_e times its colour, even with no light"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
-         "reflectance of the surface; on a transparent surface with render.weights=fresnel a coating, "
+         "reflectance of the surface; on a transparent surface with render.weights=fresnel an ideal half mirror, "
          "whose total is R + (1 - R) reflectivity with the Fresnel reflectance R"),
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
          "fraction of the light not reflected (with constant weights or simple transmission: of the incident light) "
@@ -528,6 +528,13 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
          "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
     REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.4", "refractive index of the film, relative to vacuum"),
+    {PARAM_MATERIAL, "coating", PARAM_LAYERS, "", 0, 0, false, "none",
+     "layers on the surface, from outside to inside, whose light interferes: a named design (cuvette media), or INDEX "
+     "THICKNESS, ... with an index that is a number, n+ki, a medium, a metal or data, and a thickness in nm or as "
+     "550/4, a quarter of the wavelength 550 nm in the layer; 10x(...) repeats layers",
+     NULL, OF(material, coating)},
+    {PARAM_MATERIAL, "coating_data", PARAM_WORD, "", 0, 0, false, "",
+     "data with the index of the coating's layers `data`", NULL, OF(material, coating_data), .names = "data"},
     CHOICE(
         PARAM_MATERIAL, material, sheet, sheet_words, "none",
         "what each passage through the transparent solid does to the light's polarisation, with render.polarisation: "

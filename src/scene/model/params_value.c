@@ -2,6 +2,7 @@
 #include "scene/model/params_value.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "optics/coating.h"
 #include "optics/media.h"
 #include "scene/model/check.h"
 #include "scene/model/material.h"
@@ -54,6 +55,8 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
         snprintf(text, size, "path of a file");
     else if (row->type == PARAM_WORD)
         word_text(row, text, size);
+    else if (row->type == PARAM_LAYERS)
+        snprintf(text, size, "a design (cuvette media), or layers from outside to inside, as mgf2 99.7, ta2o5 550/2");
     else if (row->type == PARAM_LIST && !one_element)
         snprintf(text, size, "a list of at most %d numbers, each %s", (int)NUMBER_LIST_MAX, interval);
     else if (is_vector(row) && !one_element)
@@ -122,7 +125,8 @@ char *param_value_text(const param *row, int element, const void *field)
     }
     case PARAM_LIST: return list_text(field);
     case PARAM_PATH: return strdup(*(char *const *)field ? *(char *const *)field : "");
-    case PARAM_WORD: return strdup(field);
+    case PARAM_WORD:
+    case PARAM_LAYERS: return strdup(field);
     }
     return NULL;
 }
@@ -154,7 +158,8 @@ static bool fields_match(const param *row, const void *a, const void *b)
     case PARAM_COLOR: return equal_numbers(a, b, 3);
     case PARAM_LIST: return equal_lists(a, b);
     case PARAM_PATH: return equal_paths(a, b);
-    case PARAM_WORD: return strcmp(a, b) == 0;
+    case PARAM_WORD:
+    case PARAM_LAYERS: return strcmp(a, b) == 0;
     }
     return false;
 }
@@ -383,11 +388,55 @@ static status parse_word(const param *row, const char *label, const char *text, 
     return STATUS_OK;
 }
 
+/* Copies a text with single blanks, and one after each comma; false if it is too long. */
+static bool copy_spaced(const char *text, char out[COATING_MAX + 1])
+{
+    size_t length = 0;
+    bool blank = false;
+    for (; *text; text++) {
+        const bool after_comma = length > 0 && out[length - 1] == ',';
+        if (is_blank(*text)) {
+            blank = true;
+            continue;
+        }
+        if ((blank || after_comma) && length > 0 && *text != ',' && *text != ')' && out[length - 1] != '(')
+            out[length++] = ' ';
+        blank = false;
+        if (length + 2 > COATING_MAX)
+            return false;
+        out[length++] = *text;
+    }
+    out[length] = 0;
+    return true;
+}
+
+/* A coating without brackets around it; none is the empty text. */
+static status parse_layers(const char *label, char *text, char layers[COATING_MAX + 1], diagnostic *why)
+{
+    coating_layers unused;
+    diagnostic bad = {.what = ""};
+    const size_t length = strlen(text);
+    if (length >= 2 && text[0] == '[' && text[length - 1] == ']') {
+        text[length - 1] = 0;
+        text++;
+    }
+    if (strcmp(text, "none") == 0)
+        text += strlen(text);
+    const status code = *text ? coating_parse(text, &unused, &bad) : STATUS_OK;
+    if (code != STATUS_OK)
+        return diagnose(why, code, bad.remedy, "%s: %s", label, bad.what);
+    if (!copy_spaced(text, layers))
+        return diagnose(why, STATUS_BAD_INPUT, "write fewer layers, or repeat them, as 10x(...)",
+                        "%s: the coating is longer than %d bytes", label, (int)COATING_MAX);
+    return STATUS_OK;
+}
+
 /* text is a trimmed copy, which the parsers may modify. */
 static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
                             diagnostic *why)
 {
-    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST && row->type != PARAM_WORD)
+    if (!*text && row->type != PARAM_PATH && row->type != PARAM_LIST && row->type != PARAM_WORD &&
+        row->type != PARAM_LAYERS)
         return wrong(row, element >= 0, why, "%s has no value", label);
     if (element >= 0)
         return parse_real(row, label, text, &out->real, why);
@@ -400,6 +449,7 @@ static status parse_trimmed(const param *row, int element, const char *label, ch
     case PARAM_LIST: return parse_list(row, label, text, &out->list, why);
     case PARAM_PATH: return parse_path(row, label, text, &out->path, why);
     case PARAM_WORD: return parse_word(row, label, text, out->word, why);
+    case PARAM_LAYERS: return parse_layers(label, text, out->layers, why);
     }
     return STATUS_FAILURE;
 }
@@ -440,6 +490,7 @@ void param_value_store(const param *row, int element, void *field, param_value v
         break;
     case PARAM_LIST: *(number_list *)field = value.list; break;
     case PARAM_WORD: strcpy(field, value.word); break;
+    case PARAM_LAYERS: strcpy(field, value.layers); break;
     case PARAM_PATH:
         free(*(char **)field);
         *(char **)field = value.path;

@@ -12,6 +12,7 @@ typedef union param_value {
     number_list list;
     char *path;
     char word[SCENE_NAME_MAX + 1];
+    char layers[COATING_MAX + 1];
 } param_value;
 
 /* Parses and checks text; label is the parameter in messages. element -1 for the whole value, 0..2 for one element of a

@@ -195,6 +195,9 @@ static void follow_data(const scene *s, material *m)
     const int at = m->medium_data[0] ? object_find(s, PARAM_DATA, m->medium_data) : -1;
     m->index_data = data_named(s, m->medium_data);
     m->index_in_air = at >= 0 && s->data[at].relative_to == DATA_IN_AIR;
+    const int coats = m->coating_data[0] ? object_find(s, PARAM_DATA, m->coating_data) : -1;
+    m->coating_values = data_named(s, m->coating_data);
+    m->coating_in_air = coats >= 0 && s->data[coats].relative_to == DATA_IN_AIR;
     m->color_values = data_named(s, m->color_data);
     m->absorb_values = data_named(s, m->absorb_data);
     m->scatter_values = data_named(s, m->scatter_data);

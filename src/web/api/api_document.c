@@ -306,7 +306,7 @@ status api_files(call *c)
 
 status api_media(call *c)
 {
-    return api_reply_json(c, media_rows_json(NULL, NULL, 0.0));
+    return api_reply_json(c, media_rows_json((media_choice){NULL, NULL, NULL}, 0.0));
 }
 
 /* --- opening --- */

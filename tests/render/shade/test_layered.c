@@ -253,18 +253,68 @@ static void tables_are_as_exact_as_stated(void **state)
         for (size_t j = 0; j < COUNT(thickness_nm); j++) {
             if (thickness_nm[j] == 0.0 && sides[i][0] == sides[i][1])
                 continue;
-            const layered_surface s = {.film = {complex_of(sides[i][2], 0.0), thickness_nm[j]}};
-            static layered_curve c;
-            layered_curve_make(&s, sides[i][0], sides[i][1], &c);
+            film_stack layer;
+            film_stack_make((thin_film){complex_of(sides[i][2], 0.0), thickness_nm[j]}, NULL, NULL, false, &layer);
+            const layered_surface s = {.stack = &layer};
+            layered_curves c = {.side = {{0}}};
+            layered_curves_make(&s, sides[i][0], sides[i][1], &c);
             double worst = 0.0, grazing = 0.0;
             for (double at = 0.001; at < 1.0; at += 0.00937) {
-                const vec3 table = layered_curve_at(&c, at), exact = layered_color(&s, at, sides[i][0], sides[i][1]);
+                const vec3 table = layered_colors_at(&s, &c, true, at, sides[i][0], sides[i][1]).reflected,
+                           exact = layered_colors_at(&s, NULL, true, at, sides[i][0], sides[i][1]).reflected;
                 double *of = at < 0.02 ? &grazing : &worst;
                 *of = fmax(*of, color_apart((const double[3]){table.x, table.y, table.z}, exact));
             }
+            layered_curves_release(&c);
             assert_true(worst < (thickness_nm[j] <= 2000.0 ? 2e-5 : thickness_nm[j] <= 1e4 ? 1e-4 : 2e-3));
             assert_true(grazing < 1e-2);
         }
+}
+
+static film_stack coating_of(const char *text)
+{
+    coating_layers layers;
+    film_stack s;
+    assert_int_equal(coating_parse(text, &layers, NULL), STATUS_OK);
+    film_stack_make((thin_film){complex_of(1.0, 0.0), 0.0}, &layers, NULL, false, &s);
+    return s;
+}
+
+static double colors_apart(layered_colors a, layered_colors b)
+{
+    return fmax(color_apart((const double[3]){a.reflected.x, a.reflected.y, a.reflected.z}, b.reflected),
+                color_apart((const double[3]){a.transmitted.x, a.transmitted.y, a.transmitted.z}, b.transmitted));
+}
+
+/* Of both directions, below and beyond the critical angle, on solids of higher and of lower index. */
+static void tables_of_coatings_are_as_exact_as_stated(void **state)
+{
+    (void)state;
+    static const char *const coatings[] = {"ar-broad",
+                                           "mirror-550",
+                                           "short-pass-595",
+                                           "splitter-45",
+                                           "silver 45",
+                                           "aluminium-enhanced",
+                                           "1.7+0.02i 400, mgf2 90, gold 12"};
+    static const double sides[][2] = {{1.0, 1.52}, {1.33, 1.0}, {1.52, 1.52}};
+    double worst = 0.0;
+    for (size_t j = 0; j < COUNT(coatings); j++)
+        for (size_t i = 0; i < COUNT(sides); i++) {
+            const film_stack layers = coating_of(coatings[j]);
+            const layered_surface s = {.stack = &layers};
+            layered_curves c = {.side = {{0}}};
+            layered_curves_make(&s, sides[i][0], sides[i][1], &c);
+            for (double at = 0.0213; at < 1.0; at += 0.0437)
+                for (int inward = 0; inward < 2; inward++) {
+                    const double from = sides[i][!inward], to = sides[i][inward];
+                    worst = fmax(worst, colors_apart(layered_colors_at(&s, &c, inward, at, from, to),
+                                                     layered_colors_at(&s, NULL, inward, at, from, to)));
+                }
+            layered_curves_release(&c);
+        }
+    if (!(worst < 1e-4))
+        fail_msg("error %g", worst);
 }
 
 /* A gap of air between water and glass has no table: the colours are those of frustrated total reflection, by Airy's
@@ -584,6 +634,7 @@ int main(void)
         cmocka_unit_test(a_metal_by_its_numbers),
         cmocka_unit_test(a_coated_lens_from_both_sides),
         cmocka_unit_test(tables_are_as_exact_as_stated),
+        cmocka_unit_test(tables_of_coatings_are_as_exact_as_stated),
         cmocka_unit_test(a_gap_of_air_in_glass),
         cmocka_unit_test(a_smooth_mesh_with_a_film_conserves_energy),
         cmocka_unit_test(at_a_wavelength_reflectances_are_exact),

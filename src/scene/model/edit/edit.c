@@ -217,10 +217,12 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
 }
 
 /* The names of data to which a material refers. */
-enum { MATERIAL_DATA_NAMES = 4 };
+enum { MATERIAL_DATA_NAMES = 5 };
 static char *data_name(material *m, int i)
 {
-    return i == 0 ? m->medium_data : i == 1 ? m->color_data : i == 2 ? m->absorb_data : m->scatter_data;
+    char *const names[MATERIAL_DATA_NAMES] = {m->medium_data, m->color_data, m->absorb_data, m->scatter_data,
+                                              m->coating_data};
+    return names[i];
 }
 
 static bool refers(material *m, const char *name)
