@@ -82,10 +82,11 @@ typedef struct region {
     /* By material slot, for a mesh whose faces differ; shadow_transmittance is then the least of these. Borrowed, or
      * NULL. */
     const double *face_shadow_transmittance;
-    bool attenuates; /* its medium attenuates light along the path */
-    bool reflects;   /* its reflectance depends on the angle: shadow rays record crossings (ray_crossings) */
-    bool partial;    /* its surface is partial */
-    int solid;       /* index of the solid it came from */
+    const int *face_slots; /* by face of its primitive, instead of a mesh: the slot; borrowed, or NULL */
+    bool attenuates;       /* its medium attenuates light along the path */
+    bool reflects;         /* its reflectance depends on the angle: shadow rays record crossings (ray_crossings) */
+    bool partial;          /* its surface is partial */
+    int solid;             /* index of the solid it came from */
 } region;
 
 /* Where a region comes from: the source, and which of the solids that its shape stands for (solid_shape_copy). */
@@ -142,6 +143,7 @@ typedef struct region_source {
     bool opaque;
     double shadow_transmittance;
     const double *face_shadow_transmittance; /* by material slot; borrowed, or NULL */
+    const int *face_slots;                   /* by face, for a primitive; borrowed, or NULL */
     bool attenuates, reflects, partial;
     int solid;
 } region_source;

@@ -166,6 +166,9 @@ static bool inert_material(const inert_case *c)
     inert_answer first = {.rule = ""}, other;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
+        for (int slot = 1; one->visible && solid_has_ends(one) && slot < END_SLOTS; slot++)
+            if (solid_end_material(s, one, slot) == &s->materials[c->at.index].value)
+                return false; /* not examined */
         const bool by_face = may_have_face_materials(s, one);
         if (one->material_index != (int)c->at.index && !by_face)
             continue;

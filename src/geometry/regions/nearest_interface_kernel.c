@@ -604,10 +604,24 @@ static void quick_shadow_test(const scene_geometry *g, const ray_batch *rays, in
         KERNEL(mesh_shadows)(g, rays, unsure, false, s->meshes->counts, s->undecided, s->blocked);
 }
 
-/* The material slot of the mesh face that column k crosses; 0 if the surface is another region's. */
-static int crossed_slot(const scene_geometry *g, const region *owner, const hit_batch *hits,
-                        const instance_hit *mesh_hits, int k)
+/* The slot of the primitive's face that column k crosses. */
+static int crossed_face_slot(const scene_geometry *g, const region *owner, const ray_batch *rays, const ray_scratch *s,
+                             const hit_batch *hits, int k)
 {
+    const primitive *p = &g->primitives[owner->outside];
+    const uint64_t leaving = owner == &g->regions[hits->before[k]];
+    const ray_batch one = ray_batch_one(rays, s->ray[k], &leaving);
+    surface_batch point;
+    p->rule->KERNEL_ISA->points(p, &one, &hits->t[k], 0, &point);
+    return owner->face_slots[point.face[0] - p->first_face];
+}
+
+/* The material slot of the face that column k crosses; 0 if the surface is another region's. */
+static int crossed_slot(const scene_geometry *g, const region *owner, const ray_batch *rays, const ray_scratch *s,
+                        const hit_batch *hits, const instance_hit *mesh_hits, int k)
+{
+    if (owner->face_slots)
+        return hits->hit_primitive[k] == owner->outside ? crossed_face_slot(g, owner, rays, s, hits, k) : 0;
     if (hits->hit_primitive[k] != owner->outside || mesh_hits[k].face == FACE_NONE)
         return 0;
     const mesh *m = g->meshes->parts[g->meshes->by_primitive[owner->outside]].triangles;
@@ -615,15 +629,15 @@ static int crossed_slot(const scene_geometry *g, const region *owner, const hit_
 }
 
 /* The transmittance of the interface that the shadow ray in column k crosses. */
-static double interface_transmittance(const scene_geometry *g, int solid_shadows, const hit_batch *hits,
-                                      const instance_hit *mesh_hits, int k)
+static double interface_transmittance(const scene_geometry *g, const ray_batch *rays, int solid_shadows,
+                                      const ray_scratch *s, const hit_batch *hits, const instance_hit *mesh_hits, int k)
 {
     const region *before = &g->regions[hits->before[k]], *after = &g->regions[hits->after[k]];
     if (solid_shadows || after->opaque || before->opaque)
         return 0.0;
     const region *owner = hits->before[k] > hits->after[k] ? before : after;
     return owner->face_shadow_transmittance
-               ? owner->face_shadow_transmittance[crossed_slot(g, owner, hits, mesh_hits, k)]
+               ? owner->face_shadow_transmittance[crossed_slot(g, owner, rays, s, hits, mesh_hits, k)]
                : owner->shadow_transmittance;
 }
 
@@ -700,7 +714,7 @@ static void shadow_among(const scene_geometry *g, const ray_batch *given, int so
             if (!s->attention[k] || is_change(g, rays, k, s, hits, again)) {
                 const bool partial = g->partial && g->regions[hits->surface[k]].partial;
                 transmitted[s->ray[k]] *= partial ? 1.0 - covered(g, rays, k, s, hits, again)
-                                                  : interface_transmittance(g, solid_shadows, hits, again, k);
+                                                  : interface_transmittance(g, rays, solid_shadows, s, hits, again, k);
                 if (s->crossings && !partial && transmitted[s->ray[k]] > 0.0)
                     record_crossing(g, k, s, hits, again);
             }

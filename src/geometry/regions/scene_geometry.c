@@ -104,6 +104,7 @@ static void add_region(scene_geometry *g, int priority_index, const region_sourc
                   .opaque = source->opaque,
                   .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
                   .face_shadow_transmittance = source->opaque ? NULL : source->face_shadow_transmittance,
+                  .face_slots = source->face_slots,
                   .attenuates = source->attenuates && !source->opaque,
                   .reflects = source->reflects && !source->opaque,
                   .partial = source->partial,

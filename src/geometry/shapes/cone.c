@@ -82,13 +82,15 @@ const shape_rule shape_cone = {
     .word = "cone",
     .meaning = "x^2 + z^2 <= w^2, 0 <= y <= height, where w changes linearly from radius at the base to top_radius, 0 "
                "for a point; its position is the centre of its base",
-    .parameters = WORDS("radius", "top_radius", "height", "points", "scale"),
+    .parameters =
+        WORDS("radius", "top_radius", "height", "material_1", "material_2", "material_rim", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,
     .primitive_count = 1,
     .primitives = primitives,
     .faces = {WORDS("side", "bottom", "top")},
+    .ends = {1, 2},
     .flat = flat,
     .extent = extent,
     .farthest = farthest,

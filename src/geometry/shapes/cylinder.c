@@ -159,8 +159,8 @@ const shape_rule shape_cylinder = {
     .word = "cylinder",
     .meaning = "x^2 + m^2 z^2 <= radius^2, 0 <= y <= height; its position is the centre of its base; with a "
                "capillary_length, a liquid whose top is a meniscus and whose volume is the same",
-    .parameters =
-        WORDS("radius", "height", "m", "capillary_length", "contact_angle_deg", "contact_radius", "points", "scale"),
+    .parameters = WORDS("radius", "height", "m", "capillary_length", "contact_angle_deg", "contact_radius",
+                        "material_1", "material_2", "material_rim", "points", "scale"),
     .curved = true,
     .check = cylinder_check,
     .contains = cylinder_contains,
@@ -169,6 +169,7 @@ const shape_rule shape_cylinder = {
     .primitives = cylinder_primitives,
     .details = cylinder_details,
     .faces = {WORDS("side", "bottom", "top", "ring")},
+    .ends = {1, 2},
     .flat = cylinder_flat,
     .extent = cylinder_extent,
     .farthest = cylinder_farthest,

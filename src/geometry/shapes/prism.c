@@ -132,12 +132,13 @@ const shape_rule shape_prism = {
     .meaning =
         "0 <= y <= height over a regular polygon with its corners on a circle of the given radius about the axis, "
         "one of them on the -z side; its position is the centre of its base",
-    .parameters = WORDS("radius", "sides", "height", "points", "scale"),
+    .parameters = WORDS("radius", "sides", "height", "material_1", "material_2", "material_rim", "points", "scale"),
     .check = check,
     .contains = contains,
     .primitive_count = 1,
     .primitives = primitives,
     .faces = {WORDS("bottom", "top", "side")},
+    .ends = {0, 1},
     .flat = flat,
     .extent = extent,
     .farthest = farthest,

@@ -72,6 +72,8 @@ typedef struct shape_rule {
     size_t (*details)(const solid_shape *shape, void *out);
     /* By primitive, the names of its faces by number; the last name also applies to all higher numbers. */
     const char *const *faces[SHAPE_PRIMITIVES];
+    /* The numbers of the faces of material_1 and material_2, if these are among its parameters. */
+    int ends[2];
     /* The normal and one point of its i-th flat face, both local; false past the last one. */
     bool (*flat)(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point);
 

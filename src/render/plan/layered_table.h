@@ -60,11 +60,11 @@ typedef struct layered_curves {
 
 typedef struct layered_plan {
     size_t priority_indices;
-    const layered_surface **surface; /* by priority index; NULL for an ordinary surface */
+    const layered_surface **surface; /* by surface key (plan.h); NULL for an ordinary surface */
     layered_surface *surfaces;
     film_stack **stacks; /* of the surfaces; by priority index, NULL where another's is used */
     double *index;       /* refractive indices of the distinct media */
-    int *medium;         /* by priority index: number of its medium, in index */
+    int *medium;         /* by surface key: number of its medium, in index */
     int medium_count;
     layered_curves **curves; /* by priority index: a table per medium that meets the surface; NULL in a spectral film */
     bool *owns_curves;
@@ -72,7 +72,7 @@ typedef struct layered_plan {
     bool one_wavelength; /* set by the probe: every surface is evaluated at render.lambda_nm, for all channels */
 } layered_plan;
 
-/* By priority index, [0] for the surrounding medium: materials ([0] is NULL), their dispersion laws, their refractive
+/* By surface key (plan.h), [0] for the surrounding medium: materials ([0] is NULL), their dispersion laws, their refractive
  * indices at render.lambda_nm, and their shading classes (plan.h). Sets *out to NULL if no surface is layered. Returns
  * false when out of memory. */
 bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *const *laws,
@@ -90,7 +90,7 @@ typedef struct layered_colors {
 } layered_colors;
 layered_colors layered_colors_at(const layered_surface *s, const layered_curves *c, bool inward, double cos_i,
                                  double n_from, double n_to);
-/* The tables of the surface of a priority index and a medium, by its number (layered_plan.medium); filled if
+/* The tables of the surface of a key and a medium, by its number (layered_plan.medium); filled if
  * necessary. */
 const layered_curves *layered_curves_of(layered_plan *p, int priority_index, int medium_number);
 /* Fills the tables for a surface with indices n_out outside and n_in inside of the solid; *out must be zero.

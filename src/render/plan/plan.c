@@ -30,26 +30,27 @@ static bool are_alike_crystals(const scene *s, const solid *a, const solid *b)
 }
 
 /* Whether each copy of the solid is a medium of its own. */
-static bool has_own_medium(const scene *s, const material *m)
+static bool has_own_medium(const scene *s, const solid *one)
 {
-    return material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m);
+    const material *m = &one->surface;
+    return solid_has_ends(one) || material_is_opaque(m) || scene_has_constant_weights(&s->render) || shows_itself(s, m);
 }
 
 /* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
- * them is no interface unless it is coated, has a thin film, or emits light; crystals must also be alike. With constant
+ * them is no interface unless it is coated, in part too, has a thin film, or emits light; crystals must also be alike. With constant
  * weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by solid;
  * [solid_count] is the surrounding medium's. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
-    if (has_own_medium(s, m))
+    if (has_own_medium(s, &s->solids[solid_index]))
         return solid_index + 1;
     if (!material_is_crystal(m, &s->render) && index_laws_match(&s->render, &laws[solid_index], &laws[s->solid_count]))
         return 0;
     for (int i = 0; i < solid_index; i++) {
         const solid *other = &s->solids[i];
         if (other->visible && !material_is_opaque(&other->surface) && !shows_itself(s, &other->surface) &&
-            index_laws_match(&s->render, &laws[i], &laws[solid_index]) &&
+            !solid_has_ends(other) && index_laws_match(&s->render, &laws[i], &laws[solid_index]) &&
             are_alike_crystals(s, other, &s->solids[solid_index]))
             return i + 1;
     }
@@ -138,14 +139,13 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
         return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the points are not loaded", one->name);
     if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
         return out_of_memory(why);
-    if (material_roughness(&one->surface, &s->render) > 0.0) /* random paths find the light that it transmits */
-        shadow_transmittance = 0.0;
     region_source source = {.shape = has_points ? shape : &one->shape,
                             .priority = one->priority,
                             .medium = medium_of(s, laws, i),
                             .opaque = solid_is_opaque(s, one),
                             .shadow_transmittance = shadow_transmittance,
                             .face_shadow_transmittance = p->shadow_transmittance[i],
+                            .face_slots = solid_has_ends(one) ? p->end_slots[i] : NULL,
                             .attenuates = material_attenuates(&one->surface) ||
                                           material_scatters(&one->surface, &s->render) ||
                                           sheet_acts(&one->surface, &s->render),
@@ -154,7 +154,7 @@ static status add_source(const scene *s, const index_law *laws, int i, plan *p, 
                             .solid = i};
     if (source.partial && !is_mesh) /* an open surface in the surrounding medium */
         source.opaque = false, source.attenuates = surroundings_absorb(&s->background);
-    if (has_own_medium(s, &one->surface)) /* beyond the numbers of solids, and of the copies of those before */
+    if (has_own_medium(s, one)) /* beyond the numbers of solids, and of the copies of those before */
         source.further_media = (int64_t)(s->solid_count + *copies);
     *copies += solid_shape_count(source.shape);
     if (is_mesh)
@@ -177,10 +177,27 @@ static status count_sources(const scene *s, size_t *places, diagnostic *why)
     return STATUS_OK;
 }
 
+/* The slots of faces, for solids with materials of parts of their surface. */
+static status make_end_slots(const scene *s, plan *p, diagnostic *why)
+{
+    bool any = false;
+    for (size_t i = 0; i < s->solid_count && !any; i++)
+        any = s->solids[i].visible && solid_has_ends(&s->solids[i]);
+    if (!any)
+        return STATUS_OK;
+    if (!(p->end_slots = calloc(s->solid_count, sizeof *p->end_slots)))
+        return out_of_memory(why);
+    for (size_t i = 0; i < s->solid_count; i++)
+        for (int face = 0; face < FACES_MAX; face++)
+            p->end_slots[i][face] = solid_end_slot(&s->solids[i].shape, face);
+    return STATUS_OK;
+}
+
 static status build_geometry(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
     size_t places;
     TRY(count_sources(s, &places, why));
+    TRY(make_end_slots(s, p, why));
     region_source *sources = large_calloc(places + 1, sizeof *sources);
     solid_shape *shapes = large_calloc(places + 1, sizeof *shapes);
     p->solid_count = s->solid_count;
@@ -353,6 +370,8 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
         p->materials[r] = material_of(s, p, solid_index);
         if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], shared, &p->shading_materials[r]))
             return out_of_memory(why);
+        if (p->first_key && p->first_key[r])
+            p->shading_materials[r].end_slots = p->end_slots[solid_index];
         for (int k = 0; k < p->shading_materials[r].count; k++)
             if (!add_roughness(s, p, &p->shading_materials[r].mat[k].surface))
                 return out_of_memory(why);
@@ -362,14 +381,47 @@ static status fill_materials(const scene *s, shading_material **shared, plan *p,
     return STATUS_OK;
 }
 
+/* Numbers the surface keys of regions whose faces differ. */
+static status number_keys(const scene *s, plan *p, diagnostic *why)
+{
+    p->key_count = (size_t)p->geometry->region_count + 1;
+    if (!p->end_slots)
+        return STATUS_OK;
+    if (!(p->first_key = calloc(p->key_count, sizeof *p->first_key)))
+        return out_of_memory(why);
+    for (int r = 1; r <= p->geometry->region_count; r++)
+        if (solid_has_ends(&s->solids[p->geometry->regions[r].solid]))
+            p->first_key[r] = (int)p->key_count, p->key_count += END_SLOTS - 1;
+    return (p->end_laws = calloc(p->key_count, sizeof *p->end_laws)) ? STATUS_OK : out_of_memory(why);
+}
+
+/* The materials of the further keys. Only the law of an opaque one matters: that of a metal. */
+static status fill_keys(plan *p, diagnostic *why)
+{
+    for (int r = 1; p->first_key && r <= p->geometry->region_count; r++)
+        for (int slot = 1; p->first_key[r] && slot < END_SLOTS; slot++) {
+            const int key = plan_surface_key(p, r, slot);
+            const material *m = &p->shading_materials[r].mat[slot].surface;
+            p->materials[key] = m;
+            p->laws[key] = p->laws[r];
+            p->ior[key] = p->ior[r];
+            if (!material_is_opaque(m))
+                continue;
+            TRY(material_index_law(m, "", &p->end_laws[key], why));
+            p->laws[key] = &p->end_laws[key];
+        }
+    return STATUS_OK;
+}
+
 /* Fills the tables by priority index. */
 static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
 {
-    const size_t priority_indices = (size_t)p->geometry->region_count + 1;
+    TRY(number_keys(s, p, why));
+    const size_t keys = p->key_count, priority_indices = (size_t)p->geometry->region_count + 1;
     shading_material **shared = calloc(s->material_count + s->solid_count + 1, sizeof(shading_material *));
-    p->materials = large_calloc(priority_indices, sizeof *p->materials);
-    p->ior = large_calloc(priority_indices, sizeof *p->ior);
-    p->laws = large_calloc(priority_indices, sizeof *p->laws);
+    p->materials = large_calloc(keys, sizeof *p->materials);
+    p->ior = large_calloc(keys, sizeof *p->ior);
+    p->laws = large_calloc(keys, sizeof *p->laws);
     p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
     p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
     p->substitutes = calloc(s->solid_count + 1, sizeof *p->substitutes);
@@ -378,11 +430,11 @@ static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
     const status code = room ? fill_materials(s, shared, p, why) : out_of_memory(why);
     free(shared);
     TRY(code);
+    TRY(fill_keys(p, why));
     if (!plan_find_shading_classes(p))
         return out_of_memory(why);
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
-    if (s->render.spectrum == SPECTRUM_SPECTRAL &&
-        !(p->spectral = spectra_create(s, p->materials, p->laws, priority_indices)))
+    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, keys)))
         return out_of_memory(why);
     if (!sheet_list_create(s, p->geometry, &p->sheets))
         return out_of_memory(why);
@@ -390,8 +442,7 @@ static status fill_priority_indices(const scene *s, plan *p, diagnostic *why)
         return out_of_memory(why);
     if (!scatter_plan_create(s, p->geometry, &p->scatter))
         return out_of_memory(why);
-    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->shading_class, priority_indices,
-                               &p->layered)
+    return layered_plan_create(&s->render, p->materials, p->laws, p->ior, p->shading_class, keys, &p->layered)
                ? STATUS_OK
                : out_of_memory(why);
 }
@@ -497,6 +548,9 @@ void plan_destroy(plan *p)
             free(p->shading_materials[r].mat);
     free(p->shading_materials);
     free(p->shading_class);
+    free(p->first_key);
+    free(p->end_laws);
+    free(p->end_slots);
     scene_geometry_destroy(p->geometry);
     for (size_t i = 0; i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i].tree);

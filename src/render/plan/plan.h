@@ -55,7 +55,8 @@ typedef struct scatter_plan {
 typedef struct region_materials {
     int count;
     shading_material *mat;
-    bool borrowed; /* mat belongs to another region of the same material */
+    const int *end_slots; /* by face of its primitive: the slot; borrowed; NULL: a mesh, or one material */
+    bool borrowed;        /* mat belongs to another region of the same material */
     shading_rule shading;
 } region_materials;
 
@@ -66,18 +67,24 @@ typedef struct own_tree {
 
 typedef struct plan {
     scene_geometry *geometry;
-    const material **materials;          /* by priority index; [0] is NULL */
+    /* Surface keys: priority indices, and beyond them further numbers for the slots 1 .. END_SLOTS - 1 of regions whose
+     * faces differ (face_materials.h), from first_key[priority index] on. */
+    int *first_key;                      /* by priority index; 0: the region has one material. NULL: all have */
+    size_t key_count;                    /* priority indices and further keys */
+    index_law *end_laws;                 /* of opaque materials of parts of surfaces; by key */
+    int (*end_slots)[FACES_MAX];         /* by solid: region_materials.end_slots; NULL: none has any */
+    const material **materials;          /* by surface key; [0] is NULL */
     region_materials *shading_materials; /* by priority index; [0] is empty */
-    int *shading_class;  /* by priority index: the first region of its class; a class may be shaded as one group */
+    int *shading_class;  /* by surface key: the first region of its class; a class may be shaded as one group */
     own_tree *own_trees; /* hierarchies that the plan owns because the meshes do not keep them */
     size_t own_tree_count, own_tree_room;
     double **shadow_transmittance; /* by solid: of its faces by slot, or NULL */
     size_t solid_count;
     mesh_report meshes;
     material *substitutes;  /* by solid: see material_of */
-    double *ior;            /* refractive indices at render.lambda_nm, by priority index; [0]: the surrounding medium */
+    double *ior;            /* refractive indices at render.lambda_nm, by surface key; [0]: the surrounding medium */
     index_law *solid_laws;  /* by solid, then the surrounding medium's */
-    const index_law **laws; /* by priority index: the source of ior; in solid_laws */
+    const index_law **laws; /* by surface key: the source of ior; in solid_laws */
     vec3 *absorption;       /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
     spectra *spectral;      /* for a spectral film, else NULL */
     layered_plan *layered;  /* metals and thin films; NULL if there are none */
@@ -116,6 +123,13 @@ typedef struct plan {
 /* Call scene_load first. */
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
+
+/* The surface key of a slot of a region. */
+static inline int plan_surface_key(const plan *p, int priority_index, int slot)
+{
+    return slot > 0 && p->first_key && p->first_key[priority_index] ? p->first_key[priority_index] + slot - 1
+                                                                    : priority_index;
+}
 
 /* Whether the region has one material of equal values everywhere: no texture, no checker, and no spectral film. */
 bool plan_is_plain(const plan *p, int priority_index);

@@ -2,6 +2,7 @@
  * mesh file assigns to its faces; shading classes; and the tables of sheets, crystals and scattering media. */
 #include "render/plan/plan.h"
 
+#include "base/lanes.h"
 #include "geometry/shapes/shape.h"
 #include "geometry/solid.h"
 #include "scene/model/scene.h"
@@ -33,18 +34,23 @@ bool region_materials_make(const scene *s, const solid *owner, const material *s
         &shared[has_plain_material(s, owner, surface) ? (size_t)owner->material_index
                                                       : s->material_count + (size_t)(owner - s->solids)];
     out->shading = (shading_rule)owner->shading;
-    out->count = slots > 0 ? slots : 1;
-    if (slots == 0 && (out->mat = *kept)) {
+    const bool by_end = solid_has_ends(owner);
+    out->count = by_end ? END_SLOTS : slots > 0 ? slots : 1;
+    if (slots == 0 && !by_end && (out->mat = *kept)) {
         out->borrowed = true;
         return true;
     }
     out->mat = calloc((size_t)out->count, sizeof *out->mat);
     if (!out->mat)
         return false;
-    if (slots == 0)
+    if (slots == 0 && !by_end)
         *kept = out->mat;
     out->mat[0] = shading_material_of_solid(s, owner, surface);
     out->mat[0].number = number_of(s, owner, NULL);
+    for (int slot = 1; by_end && slot < END_SLOTS; slot++) {
+        out->mat[slot] = shading_material_of_end(s, owner, surface, slot);
+        out->mat[slot].number = number_of(s, owner, solid_end_material(s, owner, slot));
+    }
     for (int slot = 0; slot < slots; slot++) {
         const material *named;
         const face_material *given;
@@ -55,17 +61,30 @@ bool region_materials_make(const scene *s, const solid *owner, const material *s
     return true;
 }
 
+/* Random paths find the light that rough surfaces transmit. */
+static double surface_passes(const scene *s, const material *m)
+{
+    const double layers = material_is_layered(m, &s->render) ? material_layers_pass(m) : 1.0;
+    return material_roughness(m, &s->render) > 0.0 ? 0.0
+                                                   : m->transparency * (1.0 - material_coating(m, &s->render)) * layers;
+}
+
 bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot)
 {
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
     *by_slot = NULL;
-    const material *m = &owner->surface;
-    const double layers = material_is_layered(m, &s->render) ? material_layers_pass(m) : 1.0;
-    *least = m->transparency * (1.0 - material_coating(m, &s->render)) * layers;
+    *least = surface_passes(s, &owner->surface);
+    if (slots == 0 && !solid_has_ends(owner))
+        return true;
+    if (!(*by_slot = calloc((size_t)(slots ? slots : END_SLOTS), sizeof **by_slot)))
+        return false;
+    for (int slot = 0; slots == 0 && slot < END_SLOTS; slot++) {
+        const material end = shading_material_of_end(s, owner, &owner->surface, slot).surface;
+        (*by_slot)[slot] = surface_passes(s, &end);
+        *least = lesser(*least, (*by_slot)[slot]);
+    }
     if (slots == 0)
         return true;
-    if (!(*by_slot = calloc((size_t)slots, sizeof **by_slot)))
-        return false;
     *least = 1.0;
     for (int slot = 0; slot < slots; slot++) {
         (*by_slot)[slot] = shading_material_of_face(s, owner, &owner->surface, slot).surface.transparency;
@@ -108,12 +127,14 @@ bool plan_find_shading_classes(plan *p)
 {
     const int regions = p->geometry->region_count;
     plain_region *all = calloc((size_t)regions + 1, sizeof *all);
-    p->shading_class = calloc((size_t)regions + 1, sizeof *p->shading_class);
+    p->shading_class = calloc(p->key_count, sizeof *p->shading_class);
     if (!all || !p->shading_class) {
         free(all);
         return false;
     }
     int count = 0;
+    for (size_t key = (size_t)regions + 1; key < p->key_count; key++)
+        p->shading_class[key] = (int)key;
     for (int r = 1; r <= regions; r++) {
         p->shading_class[r] = r;
         if (plan_is_plain(p, r))

@@ -20,12 +20,12 @@ void layered_end(tracer *t)
     free(t->layered);
 }
 
-void layered_gather(tracer *t, const int *list, int priority_index)
+void layered_gather(tracer *t, const int *list, int priority_index, int key)
 {
     const plan *p = t->target.frame_plan;
     layered_plan *layered = p->layered;
     layered_work *w = t->layered;
-    w->surface = layered ? layered->surface[priority_index] : NULL;
+    w->surface = layered ? layered->surface[key] : NULL;
     if (!w->surface)
         return;
     w->colored = layered->curves && !layered->one_wavelength;
@@ -35,8 +35,7 @@ void layered_gather(tracer *t, const int *list, int priority_index)
     for (int k = 0; w->colored && k < t->surface.gathered.count; k++) {
         const int before = layered->medium[t->batch.hits.before[list[k]]],
                   after = layered->medium[t->batch.hits.after[list[k]]];
-        w->curves[k] =
-            layered_curves_of(layered, priority_index, w->surface->opaque || before != inner ? before : after);
+        w->curves[k] = layered_curves_of(layered, key, w->surface->opaque || before != inner ? before : after);
     }
 }
 

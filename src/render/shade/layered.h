@@ -17,8 +17,8 @@ typedef struct layered_work {
 bool layered_begin(tracer *t); /* begins a frame; false when out of memory */
 void layered_end(tracer *t);
 
-/* Records the surface of the gathered group, rays list[0 ..] of the batch. */
-void layered_gather(tracer *t, const int *list, int priority_index);
+/* Records the surface of the gathered group, rays list[0 ..] of the batch, by its surface key (plan.h). */
+void layered_gather(tracer *t, const int *list, int priority_index, int key);
 
 /* Replaces the weights of the branches, whose directions are computed, and with polarisation their Stokes vectors. */
 void layered_branches(tracer *t, const material *m);

@@ -206,11 +206,11 @@ static void textured_colors(tracer *t, int priority_index, const primitive *surf
 }
 
 /* Replaces the group's colours, (1, 0, 0) for the material's first colour, else (0, 1, 0), by spectral values. */
-static void spectral_colors(tracer *t, int priority_index)
+static void spectral_colors(tracer *t, int key)
 {
     group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
-        const region_spectrum *here = spectra_region(t->target.frame_plan->spectral, g->sample_key[k], priority_index);
+        const region_spectrum *here = spectra_region(t->target.frame_plan->spectral, g->sample_key[k], key);
         g->cr[k] = g->cg[k] = g->cb[k] = g->cr[k] > 0.5 ? here->color : here->checker_color;
     }
 }
@@ -232,7 +232,7 @@ static void color(tracer *t, int priority_index, const primitive *surface)
         marked.color = vec3_make(1.0, 0.0, 0.0);
         marked.checker_color = vec3_make(0.0, 1.0, 0.0);
         t->shade->color(&marked, frame, &t->surface.gathered);
-        spectral_colors(t, priority_index);
+        spectral_colors(t, t->surface.key);
     } else {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
         if (t->surface.mat->img || t->surface.mat->glows)
@@ -310,7 +310,7 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     if (p->spectral)
         spectral_indices(t, list);
     if (t->layered)
-        layered_gather(t, list, priority_index);
+        layered_gather(t, list, priority_index, t->surface.key);
     if (t->crystals)
         crystals_gather(t, tracer_queue_at(t, depth), first, list);
     if (p->render.polarisation)
@@ -335,6 +335,40 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     t->frame_integrator->shade(t, depth, priority_index);
 }
 
+/* The slots of the rays of a group on a solid whose faces have materials: the faces are those of their points. */
+static void end_slots(tracer *t, int depth, int first, const hit_group *at, const int *list, int count, int *slots)
+{
+    const plan *p = t->target.frame_plan;
+    const primitive *hit = &p->geometry->primitives[at->hit_primitive];
+    const region_materials *materials = &p->shading_materials[at->priority_index];
+    const bool own = hit->rule && hit->priority_index == at->priority_index;
+    group *g = &t->surface.gathered;
+    if (own) {
+        t->grouping->gather(tracer_queue_at(t, depth), first, &t->batch.hits, p->ior, list, count, true, g);
+        surface_points(t, at->hit_primitive, 0, g->padded, &g->points);
+    }
+    for (int k = 0; k < count; k++)
+        slots[k] = own ? materials->end_slots[g->points.face[k] - hit->first_face] : 0;
+}
+
+/* Moves the rays with the slot of the first one to the front, in order; returns their number. */
+static int next_end(int *list, int *slots, int count, int *slot)
+{
+    int others[BATCH], other_slots[BATCH], matching = 0, left = 0;
+    *slot = slots[0];
+    for (int k = 0; k < count; k++) {
+        if (slots[k] == *slot) {
+            list[matching++] = list[k];
+            continue;
+        }
+        others[left] = list[k];
+        other_slots[left++] = slots[k];
+    }
+    memcpy(list + matching, others, (size_t)left * sizeof *list);
+    memcpy(slots + matching, other_slots, (size_t)left * sizeof *slots);
+    return matching;
+}
+
 /* Shades groups that can be combined, or one group, divided by material slot. */
 static void shade_combined(tracer *t, int depth, int first, const hit_group *groups, int count)
 {
@@ -344,16 +378,22 @@ static void shade_combined(tracer *t, int depth, int first, const hit_group *gro
     for (int k = 0; k < count; k++)
         rays += groups[k].count;
     t->surface.mat = materials->mat;
+    t->surface.key = groups->priority_index;
     if (materials->count == 1) {
         shade_one_material(t, depth, first, groups, count, list, rays);
         return;
     }
     int left[BATCH];
     memcpy(left, list, (size_t)rays * sizeof left[0]);
+    int slots[BATCH];
+    if (materials->end_slots)
+        end_slots(t, depth, first, groups, list, rays, slots);
     for (int begin = 0; begin < rays;) {
         int slot;
-        const int matching = mesh_next_material(t, left + begin, rays - begin, &slot);
+        const int matching = materials->end_slots ? next_end(left + begin, slots + begin, rays - begin, &slot)
+                                                  : mesh_next_material(t, left + begin, rays - begin, &slot);
         t->surface.mat = &materials->mat[slot < materials->count ? slot : 0];
+        t->surface.key = plan_surface_key(t->target.frame_plan, groups->priority_index, slot);
         shade_one_material(t, depth, first, groups, 1, left + begin, matching);
         begin += matching;
     }

@@ -70,6 +70,7 @@ typedef struct tracer_surface {
     _Alignas(64) branch_group branches;
     polar_group polar;
     const shading_material *mat;
+    int key;                /* the surface key of mat (plan.h) */
     const vec3 *texture_at; /* points of the texture lookup; NULL: the hit points themselves */
     bool on_mesh;
     bool blended; /* the rays are divided: `cover` of each meets the surface, the rest goes on */

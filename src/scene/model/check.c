@@ -412,6 +412,47 @@ static status check_face_layers(const scene *s, const solid *owner, diagnostic *
     return STATUS_OK;
 }
 
+/* Materials of ends must exist, and be opaque on an opaque solid; and what holds for the solid's own surface holds for
+ * theirs. */
+static status check_end(const scene *s, const solid *owner, int slot, diagnostic *why)
+{
+    const material *named = solid_end_material(s, owner, slot);
+    if (!owner->ends[slot - 1][0])
+        return STATUS_OK;
+    if (!named)
+        return unknown(s, PARAM_MATERIAL, owner->name, owner->ends[slot - 1], why);
+    if (material_is_mirror(named))
+        return diagnose(why, STATUS_BAD_INPUT, "set its transparency to 0 and its reflectivity to 1",
+                        "%.80s: a mirror by its index, %.80s, cannot cover a part of a surface", owner->name,
+                        owner->ends[slot - 1]);
+    if (named->alpha != ALPHA_OPAQUE)
+        return diagnose(why, STATUS_BAD_INPUT, "set its alpha to opaque",
+                        "%.80s: %.80s, the material of a part of its surface, has alpha", owner->name,
+                        owner->ends[slot - 1]);
+    if (material_is_opaque(&owner->surface) && named->transparency > 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "set its transparency to 0",
+                        "%.80s is opaque, but %.80s, the material of a part of its surface, is not", owner->name,
+                        owner->ends[slot - 1]);
+    solid part = *owner;
+    part.surface = shading_material_of_end(s, owner, &owner->surface, slot).surface;
+    return check_layers(s, &part, why);
+}
+
+static status check_ends(const scene *s, const solid *owner, diagnostic *why)
+{
+    if (!solid_has_ends(owner) || !owner->visible)
+        return STATUS_OK;
+    if (integrator_traits_of(&s->render)->drawn)
+        return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or remove material_1 .. material_rim",
+                        "%.80s: the depth buffer does not support materials of parts of its surface", owner->name);
+    if (owner->surface.extraordinary_ior > 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "set its extraordinary_ior to 0, or remove material_1 .. material_rim",
+                        "%.80s: a crystal has one material", owner->name);
+    for (int slot = 1; slot < END_SLOTS; slot++)
+        TRY(check_end(s, owner, slot, why));
+    return STATUS_OK;
+}
+
 /* A surface with holes, or that is there in part, is open: nothing can be behind it that refracts. */
 static status check_alpha(const solid *owner, diagnostic *why)
 {
@@ -470,6 +511,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(material_coating_check(&owner->surface, owner->name, why));
     TRY(check_layers(s, owner, why));
     TRY(check_face_layers(s, owner, why));
+    TRY(check_ends(s, owner, why));
     TRY(check_scattering(s, owner, why));
     /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under
      * Fresnel weights R + T = 1 always holds, and reflectivity applies only to opaque surfaces. */

@@ -1,6 +1,7 @@
 /* Finds the material of a face: the scene's, the mesh file's or the solid's. */
 #include "scene/model/face_materials.h"
 #include "geometry/hierarchy/hierarchy.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -109,6 +110,46 @@ shading_material shading_material_of_solid(const scene *s, const solid *owner, c
                                          .img = image_of(s, base),
                                          .opacity = 1.0,
                                          .vertex_colors = solid_shows_vertex_colors(s, owner)});
+}
+
+bool solid_has_ends(const solid *owner)
+{
+    return (owner->ends[0][0] || owner->ends[1][0] || owner->ends[2][0]) &&
+           shape_has(shape_of(&owner->shape), "material_1");
+}
+
+int solid_end_slot(const solid_shape *shape, int64_t face)
+{
+    const shape_rule *rule = shape_of(shape);
+    return face == rule->ends[0] ? 1 : face == rule->ends[1] ? 2 : 3;
+}
+
+const material *solid_end_material(const scene *s, const solid *owner, int slot)
+{
+    return slot > 0 ? named_material_of(s, owner->ends[slot - 1]) : NULL;
+}
+
+static material surface_of(const material *base, const material *named)
+{
+    material m = *base;
+    m.film_thickness_nm = named->film_thickness_nm, m.film_ior = named->film_ior;
+    memcpy(m.coating, named->coating, sizeof m.coating);
+    memcpy(m.coating_data, named->coating_data, sizeof m.coating_data);
+    m.coating_values = named->coating_values, m.coating_in_air = named->coating_in_air;
+    m.roughness = named->roughness, m.reflectivity = named->reflectivity, m.emission = named->emission;
+    m.ambient = named->ambient, m.diffuse = named->diffuse;
+    m.specular = named->specular, m.shininess = named->shininess;
+    return m;
+}
+
+shading_material shading_material_of_end(const scene *s, const solid *owner, const material *base, int slot)
+{
+    const material *named = solid_end_material(s, owner, slot);
+    if (!named)
+        return shading_material_of_solid(s, owner, base);
+    if (named->transparency > 0.0)
+        return (shading_material){.surface = surface_of(base, named), .opacity = 1.0};
+    return (shading_material){.surface = material_as_measured(named), .img = image_of(s, named), .opacity = 1.0};
 }
 
 bool shading_material_is_partial(const shading_material *m)

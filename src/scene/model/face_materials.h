@@ -40,6 +40,20 @@ shading_material shading_material_of_solid(const scene *s, const solid *owner, c
  * the mesh's file, and are left out with a material of the scene. */
 bool solid_shows_vertex_colors(const scene *s, const solid *owner);
 
+/* --- materials of the ends of solids that are not meshes --- */
+
+/* Whether some of the solid's ends, or the rest of its surface, has a material of its own. */
+bool solid_has_ends(const solid *owner);
+/* Slots: 0 for surface of the solid that another solid exposes, 1 and 2 for its ends, 3 for the rest. */
+enum { END_SLOTS = 4 };
+/* The slot of a face of a solid of this shape, by the face's number in its only primitive. */
+int solid_end_slot(const solid_shape *shape, int64_t face);
+/* The scene's material of a slot; NULL: the solid's own. */
+const material *solid_end_material(const scene *s, const solid *owner, int slot);
+/* The material of a slot. An opaque material is used whole, whatever the solid consists of, and light meets it as from
+ * outside from both sides; of another one the surface only: coating, film, roughness, reflectivity and Phong's terms. */
+shading_material shading_material_of_end(const scene *s, const solid *owner, const material *base, int slot);
+
 /* Whether alpha removes a part of the surface, and how much of it is there at texture coordinates (u, v), 0 to 1: with
  * alpha mask 0 or 1. */
 bool shading_material_is_partial(const shading_material *m);

@@ -670,6 +670,16 @@ static const param table[] = {
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edge lengths along x, y and z", NULL,
      SHAPE(shape.size)},
     {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh), .names = "mesh"},
+    {PARAM_SOLID, "material_1", PARAM_WORD, "", 0, 0, false, "",
+     "material whose surface (coating, film, roughness; paint or metal if it is opaque) the first end has: side 1 of a "
+     "lens, the bottom of other solids; none: the solid's own",
+     NULL, SHAPE(ends[0]), .names = "material"},
+    {PARAM_SOLID, "material_2", PARAM_WORD, "", 0, 0, false, "",
+     "the same for the second end: side 2 of a lens, the top of other solids", NULL, SHAPE(ends[1]),
+     .names = "material"},
+    {PARAM_SOLID, "material_rim", PARAM_WORD, "", 0, 0, false, "",
+     "the same for the rest of its surface: the rim of a lens, the sides of other solids", NULL, SHAPE(ends[2]),
+     .names = "material"},
     {PARAM_SOLID, "points", PARAM_WORD, "", 0, 0, false, "",
      "name of a mesh with a file of points (.xyz): a copy of the solid is at each of them, along the solid's own axes "
      "from its position",

@@ -31,6 +31,8 @@ typedef struct solid {
     char points[SCENE_NAME_MAX + 1];  /* name of the mesh at whose vertices the solid is repeated; "" for one solid */
     int64_t shading;                  /* shading_rule, for meshes */
     int material_index;               /* index in scene.materials; -1 for none */
+    char ends[3][SCENE_NAME_MAX + 1]; /* names of the materials of its two ends and of the rest of its surface; "" for
+                                         the solid's own; see solid_has_ends */
     material surface;                 /* a copy of the material, with the solid's changes */
 } solid;
 

@@ -163,12 +163,17 @@ status scene_set_property(scene *s, const char *path, const char *value, diagnos
 
 /* --- removing and renaming --- */
 
+static bool is_end_material(const solid *owner, const char *name)
+{
+    return strcmp(owner->ends[0], name) == 0 || strcmp(owner->ends[1], name) == 0 || strcmp(owner->ends[2], name) == 0;
+}
+
 static status remove_material(scene *s, size_t index, diagnostic *why)
 {
     const char *user = NULL;
     size_t users = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
-        if (s->solids[i].material_index == (int)index) {
+        if (s->solids[i].material_index == (int)index || is_end_material(&s->solids[i], s->materials[index].name)) {
             user = user ? user : s->solids[i].name;
             users++;
         }
@@ -286,7 +291,7 @@ static void rename_data(material *m, const char *from, const char *to)
             strcpy(data_name(m, i), to);
 }
 
-/* Renames the references of solids and materials to a mesh, a texture or data. */
+/* Renames the references of solids and materials to a mesh, a texture, data or the material of an end. */
 static void follow_name(scene *s, const param_place *at, const char *from, const char *to)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -301,6 +306,9 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
             strcpy(owner->surface.texture, to);
         if (at->object_group == PARAM_DATA)
             rename_data(&owner->surface, from, to);
+        for (int k = 0; at->object_group == PARAM_MATERIAL && k < 3; k++)
+            if (strcmp(owner->ends[k], from) == 0)
+                strcpy(owner->ends[k], to);
     }
     for (size_t i = 0; at->object_group == PARAM_DATA && i < s->material_count; i++)
         rename_data(&s->materials[i].value, from, to);
