@@ -30,6 +30,7 @@ const char *const export_endings[EXPORT_FORMAT_COUNT] = {".pov", ".gltf", ".glb"
 #define SAMPLED_SIZES "the area of a light is sampled at 16 x 16 points, without regard to its direction"
 #define CRYSTALS "there is no double refraction: a crystal has its ordinary index"
 #define FILMS "there is no interference in thin films"
+#define ONE_MATERIAL "a solid has its own material on its whole surface"
 #define SHEETS "there are no polarising filters and wave plates"
 #define TURBID "media do not scatter"
 #define SMOOTH "surfaces that reflect or refract are smooth"
@@ -121,6 +122,7 @@ static const decision decisions[] = {
      "diameter_1 diameter_2 conic_1 conic_2 a4_1 a6_1 a8_1 a10_1 a12_1 a14_1 a16_1 a18_1 a20_1 a4_2 a6_2 a8_2 a10_2 "
      "a12_2 a14_2 a16_2 a18_2 a20_2 size mesh points scale copies spacing",
      SAID, SAID},
+    {PARAM_SOLID, "material_1 material_2 material_rim", ONE_MATERIAL, ONE_MATERIAL},
     {PARAM_SOLID, "shading priority visible", SAID, SAID},
 };
 enum { DECISIONS = sizeof decisions / sizeof *decisions };

@@ -100,6 +100,16 @@ static void thin_films_conserve_energy(void **state)
         check_image(FILMS, depth);
 }
 
+/* Coatings without absorption, too. */
+static void coatings_conserve_energy(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth <= 6; depth += 3)
+        check_image("vessel.coating=ar-broad block.coating=mirror-550 bead.coating=short-pass-595 "
+                    "bubble.coating=splitter-45 slab.coating=polariser-cube",
+                    depth);
+}
+
 /* By wavelength, also of polarised light: at every depth the whole film is white. */
 static void thin_films_conserve_energy_at_every_wavelength(void **state)
 {
@@ -168,6 +178,7 @@ int main(void)
         cmocka_unit_test(fresnel_weights_conserve_energy),
         cmocka_unit_test(polarised_light_conserves_energy),
         cmocka_unit_test(thin_films_conserve_energy),
+        cmocka_unit_test(coatings_conserve_energy),
         cmocka_unit_test(thin_films_conserve_energy_at_every_wavelength),
         cmocka_unit_test(constant_weights_conserve_energy),
         cmocka_unit_test(a_camera_in_any_medium_has_radiance_1_in_the_furnace),
