@@ -110,14 +110,16 @@ def test_one_wavelength_equals_the_programs(program, tmp_path):
 
 def test_beams_equal_the_programs(program):
     path = str(ROOT / "experiments/scenes/lens.yaml")
-    rays = cuvette.read(path).beams(sun__white=True)
-    beams = json.loads(program("trace", path, "--beams", "--json", "--set", "sun.white=on"))["beams"]
+    rays = cuvette.read(path).beams(sun__white=True, sun__field_rows=2)
+    settings = "--set sun.white=on --set sun.field_rows=2".split()
+    beams = json.loads(program("trace", path, "--beams", "--json", *settings))["beams"]
     other = [(one["name"], ray) for one in beams for ray in one["rays"]]
     assert len(rays) == len(other) > 1 and len({ray.lambda_nm for ray in rays}) > 1
     for own, (name, ray) in zip(rays, other):
-        assert (own.beam, own.lambda_nm, own.power) == (name, ray["lambda_nm"], ray["power"])
+        assert (own.beam, own.lambda_nm, own.power, own.field) == (name, ray["lambda_nm"], ray["power"], ray["field"])
         assert (own.number, list(own.tree[0].hit.point)) == (ray["number"], ray["root"]["hit"]["point"])
         assert own.tree[0].hit.R == ray["root"]["hit"]["R"] and own.tree[1].n == ray["root"]["children"][0]["n"]
+    assert {ray.field for ray in rays} == {0, 1}
     del rays[1:]
     assert rays[0].tree[0].kind == "camera" and rays[0].tree[0].medium_name == "air"  # its query is gone
     assert cuvette.Scene().beams() == []

@@ -338,11 +338,12 @@ class Fan:
 
 
 class BeamRay:
-    """A ray of one of the scene's beams: name of the beam, number among its `rays`, wavelength, power, and tree."""
+    """A ray of one of the scene's beams: name of the beam, number among its `rays`, wavelength, power, number of its
+    field point, and tree."""
 
     def __init__(self, ray: Any, tree: Tree) -> None:
         self.beam, self.number, self.rays = text_of(ray.beam_name), int(ray.number), int(ray.rays)
-        self.lambda_nm, self.power, self.tree = float(ray.lambda_nm), float(ray.power), tree
+        self.lambda_nm, self.power, self.field, self.tree = float(ray.lambda_nm), float(ray.power), int(ray.field), tree
 
     def __repr__(self) -> str:
         return f"<BeamRay {self.beam} {self.number + 1} of {self.rays}, {self.lambda_nm:.6g} nm>"
@@ -394,7 +395,7 @@ class Tracer:
 
     @described("cuvette_query_each_beam_ray")
     def beams(self, **short: Any) -> List[BeamRay]:
-        """The rays of the scene's beams, by beam, wavelength and number."""
+        """The rays of the scene's beams, by beam, field point, wavelength and number."""
         found: List[BeamRay] = []
 
         def add(ray: Any, tree: Any) -> None:
