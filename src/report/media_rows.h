@@ -1,5 +1,6 @@
-/* The catalogues of media, metals and coatings as tables, one entry in detail, or JSON. at_nm is a further wavelength; 0: none.
- * Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them. */
+/* The catalogues of media, metals and coatings as tables, one entry in detail, or JSON. at_nm is a further wavelength;
+ * 0: none. Ownership: the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks
+ * them. */
 #pragma once
 
 #include "optics/coating.h"

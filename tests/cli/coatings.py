@@ -1,6 +1,6 @@
-"""Random coatings against an independent program: `cuvette trace --beams --json` on a coated plate, and the recursion of
-Fresnel's coefficients (Rouard; Macleod, Thin-Film Optical Filters, 2.5) in Python's complex numbers. Prints the number
-of compared surfaces and the largest difference of R_s, R_p and T. coatings.py PROGRAM FOLDER"""
+"""Random coatings against an independent program: `cuvette trace --beams --json` on a coated plate, and the recursion
+of Fresnel's coefficients (Rouard; Macleod, Thin-Film Optical Filters, 2.5) in Python's complex numbers. Prints the
+number of compared surfaces and the largest difference of R_s, R_p and T. coatings.py PROGRAM FOLDER"""
 
 import cmath
 import json
@@ -48,7 +48,8 @@ for case in range(40):
     if len(written) > 255:
         stack, written = stack[:3], ", ".join(written.split(", ")[:3])
     beams = "".join(
-        f"  b{i}: {{position: [0, 3, 0], direction: [{math.sin(a)!r}, {-math.cos(a)!r}, 0], lambda_nm: {lambda_nm!r}}}\n"
+        f"  b{i}: {{position: [0, 3, 0], direction: [{math.sin(a)!r}, {-math.cos(a)!r}, 0], "
+        f"lambda_nm: {lambda_nm!r}}}\n"
         for i, a in enumerate(number.uniform(0, 1.5) for _ in range(8))
     )
     with open(f"{folder}/plate.yaml", "w", encoding="ascii") as scene:

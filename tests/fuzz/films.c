@@ -105,6 +105,7 @@ static void value_of(const param *row, unsigned how, char *text, size_t size)
     case PARAM_LIST:
     case PARAM_PATH:
     case PARAM_WORD: text[0] = 0; break;
+    case PARAM_LAYERS: snprintf(text, size, "ar-550"); break;
     }
 }
 

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ACTS_VALUES_MAX = 24, ACTS_TEXT_MAX = 768 };
+enum { ACTS_VALUES_MAX = 32, ACTS_TEXT_MAX = 768 };
 
 typedef struct acts_values {
     int count;
@@ -113,7 +113,7 @@ static inline void acts_words(const char *const *words, const char *now, acts_va
         acts_add(v, now, words[i]);
 }
 
-/* Names that are legal for a word: of meshes and textures, and files of the folder experiments/scenes. */
+/* Names that are legal for a word: of meshes, textures and materials, and files of the folder experiments/scenes. */
 static inline void acts_names(const scene *s, const param *row, const char *now, acts_values *v)
 {
     static const char *const files[] = {"chequer.png",       "models.jpg",         "slime.jpg",
@@ -126,6 +126,8 @@ static inline void acts_names(const scene *s, const param *row, const char *now,
         acts_add(v, now, s->textures[i].name);
     for (size_t i = 0; i < s->mesh_count; i++)
         acts_add(v, now, s->meshes[i].name);
+    for (size_t i = 0; i < s->material_count; i++)
+        acts_add(v, now, s->materials[i].name);
     acts_add(v, now, "");
 }
 
@@ -146,5 +148,6 @@ static inline void acts_values_of(const scene *s, const param *row, const char *
     case PARAM_LIST: acts_lists(now, v); break;
     case PARAM_PATH:
     case PARAM_WORD: acts_names(s, row, now, v); break;
+    case PARAM_LAYERS: acts_words((const char *const[]){"none", "ar-550", "mirror-550", NULL}, now, v); break;
     }
 }

@@ -164,10 +164,15 @@ static size_t candidates(const param *row, char text[][100], size_t room)
     case PARAM_PATH: snprintf(text[0], 100, "images/it's: a sky #1.png"); return 1;
     case PARAM_WORD:
         snprintf(text[0], 100,
-                 strstr(row->name, "_data")     ? "measured"
-                 : row->group == PARAM_MATERIAL ? "bark"
+                 strstr(row->name, "_data")                ? "measured"
+                 : strncmp(row->name, "material_", 9) == 0 ? "paint"
+                 : row->group == PARAM_MATERIAL            ? "bark"
                                                 : "body");
         return 1;
+    case PARAM_LAYERS:
+        snprintf(text[0], 100, "ar-broad");
+        snprintf(text[1], 100, "2x(mgf2 550/4, 2.1+0.3i 20), silver 10");
+        return 2;
     case PARAM_CHOICE: break;
     }
     return 0;

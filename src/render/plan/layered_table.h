@@ -1,21 +1,22 @@
 /* Surfaces that reflect by wave optics: metals, and thin films and coatings (optics/coating.h) on any surface
- * (optics/multilayer.h). For a spectral film they are evaluated exactly, ray by ray. For an rgb film each surface has a
- * table by angle of the colour of reflected daylight: its reflectance under D65, as the standard observer sees it
+ * (optics/multilayer.h). For a spectral film they are evaluated exactly, ray by ray. For an rgb film each surface has
+ * a table by angle of the colour of reflected daylight: its reflectance under D65, as the standard observer sees it
  * (optics/spectrum.h), in linear sRGB, where white is 1 at every angle; the media on both sides have their indices at
  * render.lambda_nm. Colours outside the gamut are clamped to 0 .. 1, so that no light is created; layers without
- * absorption transmit the rest, channel by channel, and for others there is a table of transmitted daylight, limited to
- * the rest. This is exact for one reflection of daylight; after several, the product of colours is not the colour of the
- * product.
+ * absorption transmit the rest, channel by channel, and for others there is a table of transmitted daylight, limited
+ * to the rest. This is exact for one reflection of daylight; after several, the product of colours is not the colour
+ * of the product.
  *
  * The table is uniform in the cosine on the side of the lower index, because the reflectance has no singularity there.
  * A ray from the other side uses the cosine of its refracted ray, since reversed paths have equal reflectance; under
  * total reflection the colour is 1. Layers that absorb reflect unlike from their two sides and under total reflection,
- * too: they have tables for each (layered_side). Interpolation is cubic: its error is below 2e-5 for thin films up to 2
- * um, 1e-4 up to 10 um, and 2e-3 up to 20 um; 1e-2 within a degree of grazing, where fringes are narrower than the steps
- * of the integral. A table of several layers has as many steps as it needs for 1e-4, at most LAYERED_STEPS_MOST. Total
- * reflection begins abruptly at a thin film of lower index than both sides (a gap of air between glass and water), so
- * that single films of this kind are integrated for each ray. The worker whose ray first needs a table fills it; its
- * values depend only on the scene. Ownership: layered_plan_create allocates, layered_plan_destroy releases. */
+ * too: they have tables for each (layered_side). Interpolation is cubic: its error is below 2e-5 for thin films up to
+ * 2 um, 1e-4 up to 10 um, and 2e-3 up to 20 um; 1e-2 within a degree of grazing, where fringes are narrower than the
+ * steps of the integral. A table of several layers has as many steps as it needs for 1e-4, at most LAYERED_STEPS_MOST.
+ * Total reflection begins abruptly at a thin film of lower index than both sides (a gap of air between glass and
+ * water), so that single films of this kind are integrated for each ray. The worker whose ray first needs a table
+ * fills it; its values depend only on the scene. Ownership: layered_plan_create allocates, layered_plan_destroy
+ * releases. */
 #pragma once
 
 #include "optics/coating.h"
@@ -72,9 +73,9 @@ typedef struct layered_plan {
     bool one_wavelength; /* set by the probe: every surface is evaluated at render.lambda_nm, for all channels */
 } layered_plan;
 
-/* By surface key (plan.h), [0] for the surrounding medium: materials ([0] is NULL), their dispersion laws, their refractive
- * indices at render.lambda_nm, and their shading classes (plan.h). Sets *out to NULL if no surface is layered. Returns
- * false when out of memory. */
+/* By surface key (plan.h), [0] for the surrounding medium: materials ([0] is NULL), their dispersion laws, their
+ * refractive indices at render.lambda_nm, and their shading classes (plan.h). Sets *out to NULL if no surface is
+ * layered. Returns false when out of memory. */
 bool layered_plan_create(const render_settings *r, const material *const *materials, const index_law *const *laws,
                          const double *ior, const int *shading_class, size_t priority_indices, layered_plan **out);
 void layered_plan_destroy(layered_plan *p);

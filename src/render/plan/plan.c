@@ -37,9 +37,9 @@ static bool has_own_medium(const scene *s, const solid *one)
 }
 
 /* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
- * them is no interface unless it is coated, in part too, has a thin film, or emits light; crystals must also be alike. With constant
- * weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion laws by solid;
- * [solid_count] is the surrounding medium's. */
+ * them is no interface unless it is coated, in part too, has a thin film, or emits light; crystals must also be alike.
+ * With constant weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion
+ * laws by solid; [solid_count] is the surrounding medium's. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;

@@ -51,7 +51,8 @@ int solid_end_slot(const solid_shape *shape, int64_t face);
 /* The scene's material of a slot; NULL: the solid's own. */
 const material *solid_end_material(const scene *s, const solid *owner, int slot);
 /* The material of a slot. An opaque material is used whole, whatever the solid consists of, and light meets it as from
- * outside from both sides; of another one the surface only: coating, film, roughness, reflectivity and Phong's terms. */
+ * outside from both sides; of another one the surface only: coating, film, roughness, reflectivity and Phong's terms.
+ * */
 shading_material shading_material_of_end(const scene *s, const solid *owner, const material *base, int slot);
 
 /* Whether alpha removes a part of the surface, and how much of it is there at texture coordinates (u, v), 0 to 1: with

@@ -57,8 +57,8 @@ struct film_stack; /* optics/coating.h */
 void material_film_stack(const material *m, struct film_stack *out);
 /* Whether two materials have equal layers. */
 bool material_films_match(const material *a, const material *b);
-/* The mean transmittance of the layers over the channels of an rgb film at normal incidence, from air into the material;
- * 1 if only a single film is there, whose loss shadow rays do not have. */
+/* The mean transmittance of the layers over the channels of an rgb film at normal incidence, from air into the
+ * material; 1 if only a single film is there, whose loss shadow rays do not have. */
 double material_layers_pass(const material *m);
 /* STATUS_BAD_INPUT if a layer of the coating needs data that the material does not name. */
 status material_coating_check(const material *m, const char *label, diagnostic *why);
