@@ -72,7 +72,7 @@ static json_t *parameter_json(const fit *f, const fit_result *r, size_t i)
     json_add_as(&o, "value", json_of_real(r->best.x[i]));
     json_add_as(&o, "from", json_of_real(p->from));
     json_add_as(&o, "to", json_of_real(p->to));
-    json_add_as(&o, "at_bound", json_boolean(r->at_bound[i]));
+    json_add_as(&o, "at_bound", json_boolean(r->derivative.at_bound[i]));
     json_add_as(&o, "error", json_of_real(r->has_interval ? r->error[i] : (double)NAN));
     json_add_as(&o, "low", json_of_real(r->has_interval ? r->best.x[i] - r->half[i] : (double)NAN));
     json_add_as(&o, "high", json_of_real(r->has_interval ? r->best.x[i] + r->half[i] : (double)NAN));
@@ -97,7 +97,7 @@ static json_t *target_json(const fit *f, const fit_result *r, size_t i)
         json_add_as(&o, "weight", json_of_real(t->weight));
     }
     for (size_t k = 0; k < f->parameter_count; k++)
-        json_add_as(&derivatives, f->parameters[k].name, json_of_real(r->derivative[i][k]));
+        json_add_as(&derivatives, f->parameters[k].name, json_of_real(r->derivative.by[i][k]));
     json_add_as(&o, "derivatives", derivatives);
     return o;
 }
@@ -148,7 +148,7 @@ static void print_parameters(const fit *f, const fit_result *r)
                      number_format_within(x + half, half / 10, high));
         printf("%-24s %16.10g  %-33s %11s %11s%s\n", f->parameters[i].name, x, interval,
                text_of(r->tolerance[i][0], "%.4g", down), text_of(r->tolerance[i][1], "%+.4g", up),
-               r->at_bound[i] ? "  at its bound" : "");
+               r->derivative.at_bound[i] ? "  at its bound" : "");
     }
     if (r->worsening > 0.0)
         printf("down, up: the change of one parameter that worsens the merit by %g\n", r->worsening);
@@ -176,7 +176,7 @@ static void print_targets(const fit *f, const fit_result *r)
     for (size_t i = 0; i < f->target_count; i++)
         for (size_t k = 0; k < f->parameter_count; k++)
             printf("%-24s %-24s %14s\n", f->targets[i].name, f->parameters[k].name,
-                   text_of(r->derivative[i][k], "%.6g", off));
+                   text_of(r->derivative.by[i][k], "%.6g", off));
 }
 
 static void print_text(const fit_run *run, const fit_result *r, const char *results)
@@ -212,7 +212,7 @@ static void note_idle_parameters(const fit *f, const fit_result *r)
     for (size_t i = 0; i < f->parameter_count; i++) {
         bool acts = false;
         for (size_t k = 0; k < f->target_count; k++)
-            acts = acts || r->derivative[k][i] != 0.0;
+            acts = acts || r->derivative.by[k][i] != 0.0;
         snprintf(
             text, sizeof text,
             "%s: %.64s changes nothing that is measured near the best point: it has no effect, or step is too small",

@@ -1,7 +1,7 @@
 /* A fit: parameters of a study's scene are chosen so that measured quantities meet targets, or so that one quantity is
- * least or greatest. read.c reads the section `fit` of a study file, measure.c measures the quantities, rows.c keeps
- * every evaluation as a row of results/<study>/fit.csv, search.c lets NLopt choose the points, spread.c derives
- * sensitivities, intervals and tolerances at the best one, report.c writes them.
+ * least or greatest. read.c and read_targets.c read the section `fit` of a study file, measure.c measures the
+ * quantities, rows.c keeps every evaluation as a row of results/<study>/fit.csv, search.c lets NLopt choose the points,
+ * damped.c does so by derivatives, and spread.c adds intervals and tolerances at the best one.
  *
  * Everything is a function of the study file, the scene and the build: the same rows in the same order, for any number
  * of threads. A fit that is run again requests the same points; those with a row are not measured again, so that a
@@ -85,6 +85,7 @@ typedef enum fit_method {
     FIT_SBPLX,
     FIT_BOBYQA,
     FIT_COBYLA,
+    FIT_DAMPED, /* least squares by derivatives, not of NLopt: damped.c */
     FIT_DIRECT, /* global, without random numbers */
     FIT_CRS,    /* global, with the seed */
     FIT_METHOD_COUNT
@@ -151,22 +152,36 @@ size_t fit_run_new(const fit_run *r);         /* those that it measured */
 size_t fit_run_set_aside(const fit_run *r);   /* rows of other builds, scenes or quantities, or edited, not used */
 const fit *fit_run_of(const fit_run *r);
 
+typedef double fit_matrix[FIT_PARAMETERS_MAX][FIT_PARAMETERS_MAX];
+
+/* Of each target by each parameter; at a bound the difference is one-sided. */
+typedef struct fit_derivatives {
+    double by[FIT_TARGETS_MAX][FIT_PARAMETERS_MAX];
+    bool at_bound[FIT_PARAMETERS_MAX];
+} fit_derivatives;
+
 typedef struct fit_result {
     fit_evaluation best;
-    const char *ended;                                      /* why the last stage ended */
-    double derivative[FIT_TARGETS_MAX][FIT_PARAMETERS_MAX]; /* of each target by each parameter, at the best point */
-    bool at_bound[FIT_PARAMETERS_MAX];                      /* there the difference is one-sided */
-    long freedom;                                           /* targets minus parameters */
-    bool has_interval;                                      /* the parameters are determined, and their errors known */
-    double error[FIT_PARAMETERS_MAX];                       /* standard error */
-    double half[FIT_PARAMETERS_MAX];                        /* half the 95 % interval, linear in the parameters */
-    double correlation[FIT_PARAMETERS_MAX][FIT_PARAMETERS_MAX];
+    const char *ended;                /* why the last stage ended */
+    fit_derivatives derivative;       /* at the best point */
+    long freedom;                     /* targets minus parameters */
+    bool has_interval;                /* the parameters are determined, and their errors known */
+    double error[FIT_PARAMETERS_MAX]; /* standard error */
+    double half[FIT_PARAMETERS_MAX];  /* half the 95 % interval, linear in the parameters */
+    fit_matrix correlation;
     double worsening;                        /* of the merit, for the tolerances; 0: none */
     double tolerance[FIT_PARAMETERS_MAX][2]; /* changes, down and up, at which it is reached; NaN: not within bounds */
 } fit_result;
 
 /* Lets the stages find the best point. The start must be measurable: otherwise STATUS_BAD_INPUT with the reason. */
 status fit_search(fit_run *r, fit_result *out, diagnostic *why);
+/* A stage of damped least squares, for targets only: improves *best. */
+status fit_damped(fit_run *r, const char *stage, fit_evaluation *best, const char **ended, diagnostic *why);
+/* The derivatives at x: evaluations at a step on both sides of each parameter. */
+status fit_jacobian(fit_run *r, const char *stage, const double *x, fit_derivatives *out, diagnostic *why);
+/* The inverse of a symmetric positive definite matrix, whose diagonal is about 1, by Gauss and Jordan; false, with a
+ * meaningless, if it is singular to working precision. */
+bool fit_invert(size_t n, fit_matrix a);
 /* Completes the result of fit_search. */
 status fit_spread(fit_run *r, fit_result *out, diagnostic *why);
 

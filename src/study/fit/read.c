@@ -25,7 +25,8 @@
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-const char *const fit_method_words[FIT_METHOD_COUNT] = {"nelder-mead", "sbplx", "bobyqa", "cobyla", "direct", "crs"};
+const char *const fit_method_words[FIT_METHOD_COUNT] = {"nelder-mead", "sbplx",  "bobyqa", "cobyla",
+                                                        "damped",      "direct", "crs"};
 
 static status located(const fit_reading *r, const node *at, status code)
 {
@@ -153,10 +154,12 @@ static status read_stages(const fit_reading *r, const node *n)
                (word->kind != NODE_SCALAR || strcmp(word->text, fit_method_words[which]) != 0))
             which++;
         if (which == FIT_METHOD_COUNT)
-            return WRONG(r, word, "use nelder-mead, sbplx, bobyqa, cobyla, direct or crs, or a list of them",
+            return WRONG(r, word, "use nelder-mead, sbplx, bobyqa, cobyla, damped, direct or crs, or a list of them",
                          "unknown method");
         if (which == FIT_BOBYQA && f->parameter_count < 2)
             return WRONG(r, word, "use nelder-mead or cobyla", "bobyqa needs two parameters");
+        if (which == FIT_DAMPED && f->goal != FIT_TARGETS)
+            return WRONG(r, word, "use another method, or targets", "damped least squares needs targets");
         f->stages[i] = (fit_method)which;
     }
     return count >= 1 && count <= FIT_STAGES_MAX ? STATUS_OK

@@ -88,6 +88,7 @@ static nlopt_algorithm algorithm_of(fit_method method)
     case FIT_COBYLA: return NLOPT_LN_COBYLA;
     case FIT_DIRECT: return NLOPT_GN_DIRECT_L;
     case FIT_CRS: return NLOPT_GN_CRS2_LM;
+    case FIT_DAMPED:
     case FIT_METHOD_COUNT: break;
     }
     return NLOPT_LN_NELDERMEAD;
@@ -156,7 +157,8 @@ status fit_search(fit_run *r, fit_result *out, diagnostic *why)
     search s = {.r = r, .f = f, .best = *e, .worst = e->merit, .why = why};
     for (size_t i = 0; i < f->stage_count; i++) {
         s.method = f->stages[i];
-        TRY(run_stage(&s, &out->ended));
+        TRY(s.method == FIT_DAMPED ? fit_damped(r, fit_method_words[FIT_DAMPED], &s.best, &out->ended, why)
+                                   : run_stage(&s, &out->ended));
     }
     out->best = s.best;
     return STATUS_OK;

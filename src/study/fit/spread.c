@@ -1,4 +1,4 @@
-/* What the best point is worth: sensitivities by central differences, intervals of the parameters, tolerances.
+/* What the best point is worth: sensitivities, intervals of the parameters, tolerances.
  *
  * With targets, the covariance of the parameters is (J^T W J)^-1, J the derivatives of the targets and W their weights
  * (Bates and Watts, Nonlinear Regression Analysis, 2.2): linear in the parameters, so its interval is good where the
@@ -14,54 +14,10 @@ static double range_of(const fit *f, size_t i)
     return f->parameters[i].to - f->parameters[i].from;
 }
 
-/* --- sensitivities --- */
-
-static status differentiate(fit_run *r, fit_result *out, size_t i, diagnostic *why)
-{
-    const fit *f = fit_run_of(r);
-    const fit_parameter *p = &f->parameters[i];
-    fit_evaluation at[2];
-    for (int side = 0; side < 2; side++) {
-        const fit_evaluation *e = NULL;
-        double x[FIT_PARAMETERS_MAX];
-        memcpy(x, out->best.x, sizeof x);
-        x[i] = side ? fmin(x[i] + f->step * range_of(f, i), p->to) : fmax(x[i] - f->step * range_of(f, i), p->from);
-        out->at_bound[i] = out->at_bound[i] || x[i] == (side ? p->to : p->from);
-        TRY(fit_evaluate(r, "derivative", x, &e, NULL, why));
-        at[side] = *e;
-    }
-    for (size_t k = 0; k < f->target_count; k++)
-        out->derivative[k][i] = (at[1].values[k] - at[0].values[k]) / (at[1].x[i] - at[0].x[i]);
-    return STATUS_OK;
-}
-
 /* --- intervals --- */
 
 /* A larger standard error, in ranges of the parameter, is that of derivatives which are only rounding errors. */
 #define ERROR_RANGES_MAX 1e3
-
-/* The inverse of a symmetric positive definite matrix by Gauss and Jordan; false if it is singular to working
- * precision. Its diagonal is 1. */
-static bool invert(size_t n, double a[FIT_PARAMETERS_MAX][FIT_PARAMETERS_MAX])
-{
-    double inverse[FIT_PARAMETERS_MAX][FIT_PARAMETERS_MAX] = {{0}};
-    for (size_t i = 0; i < n; i++)
-        inverse[i][i] = 1.0;
-    for (size_t i = 0; i < n; i++) {
-        if (!(a[i][i] > 1e-13))
-            return false;
-        const double pivot = a[i][i];
-        for (size_t k = 0; k < n; k++)
-            a[i][k] /= pivot, inverse[i][k] /= pivot;
-        for (size_t row = 0; row < n; row++) {
-            const double factor = a[row][i];
-            for (size_t k = 0; row != i && k < n; k++)
-                a[row][k] -= factor * a[i][k], inverse[row][k] -= factor * inverse[i][k];
-        }
-    }
-    memcpy(a, inverse, sizeof inverse);
-    return true;
-}
 
 /* The quantile of the interval, and the factor of the covariance; false if errors are not known. */
 static bool error_scale(const fit *f, const fit_result *out, double *quantile, double *factor)
@@ -78,18 +34,19 @@ static bool error_scale(const fit *f, const fit_result *out, double *quantile, d
 
 static void find_intervals(const fit *f, fit_result *out)
 {
-    double a[FIT_PARAMETERS_MAX][FIT_PARAMETERS_MAX] = {{0}}, scale[FIT_PARAMETERS_MAX], quantile, factor;
+    fit_matrix a = {{0}};
+    double scale[FIT_PARAMETERS_MAX], quantile, factor;
     const size_t n = f->parameter_count;
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k < n; k++)
             for (size_t t = 0; t < f->target_count; t++)
-                a[i][k] += f->targets[t].weight * out->derivative[t][i] * out->derivative[t][k];
+                a[i][k] += f->targets[t].weight * out->derivative.by[t][i] * out->derivative.by[t][k];
     for (size_t i = 0; i < n; i++)
         scale[i] = sqrt(a[i][i]);
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k < n; k++)
             a[i][k] /= scale[i] * scale[k];
-    out->has_interval = error_scale(f, out, &quantile, &factor) && invert(n, a);
+    out->has_interval = error_scale(f, out, &quantile, &factor) && fit_invert(n, a);
     for (size_t i = 0; i < n && out->has_interval; i++)
         out->has_interval = sqrt(factor * a[i][i]) / scale[i] < ERROR_RANGES_MAX * range_of(f, i);
     for (size_t i = 0; i < n; i++) {
@@ -172,8 +129,7 @@ status fit_spread(fit_run *r, fit_result *out, diagnostic *why)
     const fit *f = fit_run_of(r);
     out->freedom = (long)f->target_count - (long)f->parameter_count;
     out->has_interval = false;
-    for (size_t i = 0; i < f->parameter_count; i++)
-        TRY(differentiate(r, out, i, why));
+    TRY(fit_jacobian(r, "derivative", out->best.x, &out->derivative, why));
     if (f->goal == FIT_TARGETS)
         find_intervals(f, out);
     out->worsening = worsening_of(f, out);
