@@ -108,6 +108,22 @@ refused "mesh of two files" "unexpected argument 'b.obj'; see 'cuvette mesh --he
 refused "machine with an argument" "unexpected argument 'now'" machine now
 refused "media of an unknown name" "did you mean 'pmma'" media pmna
 refused "media of two names" "unexpected argument 'air'" media water air
+printf '10 5 1.5 8\n-10 5 1 x\n' >bad.dat
+printf '10 5 1.5 8\n-10 0 1 8\n' >good.dat
+printf 'radius,thickness,medium\n10,5,unobtainium\n' >bad.csv
+printf 'NM GLASS 2 0 1.5 60\n' >empty.agf
+refused "lens without a file" "give a lens file" lens
+refused "lens of two files" "unexpected argument" lens good.dat good.dat
+refused "lens of a missing file" "nowhere.zmx: cannot open" lens nowhere.zmx
+refused "lens with a bad number" "bad.dat:2:9: the diameter: 'x' is not a number" lens bad.dat
+refused "lens of an unknown glass" "bad.csv:2:6: the glass 'unobtainium'.*glasses FILE.agf" lens bad.csv
+refused "lens with a catalogue that lacks the glass" "the glass 'unobtainium'" lens bad.csv --glasses empty.agf
+refused "lens with a missing catalogue" "none.agf: cannot open" lens bad.csv --glasses none.agf
+refused "lens to an unknown format" "ends in .yaml, .zmx, .dat or .csv" lens good.dat -o lens.txt
+refused "lens onto its own file" "it is the file that is read" lens good.dat -o good.dat
+refused "a system of a lens file" "a lens file holds one system" lens good.dat --system a
+refused "lens of a scene without lenses" "the scene has no lens" lens "$scene"
+refused "a lens system that a scene lacks" "no lens has a name that begins with tele-" lens "$scene" --system tele
 refused "media at no wavelength" "nanometres" media --at 5,5
 refused "media at wavelength 0" "nanometres" media water --at 0
 refused "media at infinity" "nanometres" media water --at 1e999

@@ -422,9 +422,10 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"render.dpeth=1", "render has no parameter 'dpeth'; did you mean 'render.depth'?"},
         {"depth=1", "the scene has no object 'depth'; did you mean 'render.depth'?"},
         {"fov_dge=1", "the scene has no object 'fov_dge'; did you mean 'camera.fov_deg'?"},
-        {"lens.height=2", "lens is a sphere, which has no height; a sphere has position, rotation, radius, points, "
-                          "scale, priority, visible, "
-                          "and the parameters of a material"},
+        {"lens.height=2",
+         "lens is a sphere, which has no height; a sphere has follows, position, rotation, radius, points, "
+         "scale, priority, visible, "
+         "and the parameters of a material"},
         {"lens.n=1.5", "lens has no parameter 'n'; did you mean 'lens.ior'?"},
         {"lens.opacity=0.5", "lens has no parameter 'opacity'; did you mean 'lens.transparency'?"},
         {"lens.material=glass",

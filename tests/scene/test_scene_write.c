@@ -133,7 +133,8 @@ static const char one_of_each[] =
     "beams: {ray: {}}\n"
     "solids: {plane1: {shape: plane}, cylinder1: {shape: cylinder}, cup1: {shape: cup}, box1: {shape: box},\n"
     "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint},\n"
-    "  cone1: {shape: cone}, torus1: {shape: torus}, prism1: {shape: prism}, lens1: {shape: lens}}\n";
+    "  cone1: {shape: cone}, torus1: {shape: torus}, prism1: {shape: prism}, lens1: {shape: lens},\n"
+    "  rider: {shape: sphere, follows: plane1, offset: [1, 2, 3]}}\n";
 
 /* Values to try, some of which are valid for a row; NULL at the end. */
 static size_t candidates(const param *row, char text[][100], size_t room)
@@ -167,7 +168,8 @@ static size_t candidates(const param *row, char text[][100], size_t room)
                  strstr(row->name, "_data")                ? "measured"
                  : strncmp(row->name, "material_", 9) == 0 ? "paint"
                  : row->group == PARAM_MATERIAL            ? "bark"
-                                                : "body");
+                 : strcmp(row->name, "follows") == 0       ? "cylinder1"
+                                                           : "body");
         return 1;
     case PARAM_LAYERS:
         snprintf(text[0], 100, "ar-broad");
@@ -224,7 +226,7 @@ static void every_parameter_round_trips_with_other_values(void **state)
     static const char *const owners[] = {"render",    "camera",   "background", "body",    "model", "toy",
                                          "wood",      "measured", "ray",        "lamp",    "paint", "plane1",
                                          "cylinder1", "cup1",     "box1",       "sphere1", "mesh1", "painted",
-                                         "cone1",     "torus1",   "prism1",     "lens1"};
+                                         "cone1",     "torus1",   "prism1",     "lens1",   "rider"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
@@ -238,6 +240,8 @@ static void every_parameter_round_trips_with_other_values(void **state)
                                                                    : at.row->type == PARAM_PATH ? "model"
                                                                                                 : "body") != 0)
                 continue; /* skipped: a file replaces a generator, and slimes have rows of their own */
+            if (strcmp(at.row->name, "follows") == 0 && strcmp(owners[o], "rider") != 0)
+                continue; /* another solid would also lose its place */
             if (at.object_group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid is sufficient */
             if (carry_row(s, owners[o], param_at(i)) == 0)

@@ -590,19 +590,20 @@ static const param table[] = {
          "side length of the checker cells, in the solid's frame; 0: no checker"),
     COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of alternate checker cells"),
 
+    /* Before the place, which a solid that follows another one does not have. */
+    {PARAM_SOLID, "follows", PARAM_WORD, "", 0, 0, false, "",
+     "name of an earlier solid with which this one moves and turns, instead of a position and a rotation", NULL,
+     OF(solid, follows), .names = "solid"},
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
      "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; vertex of side 1 of a "
      "lens; "
      "a point on a plane; origin of a mesh",
      NULL, OF(solid, shape.position)},
-    {PARAM_SOLID, "follows", PARAM_WORD, "", 0, 0, false, "",
-     "name of an earlier solid with which this one moves and turns, instead of a position and a rotation", NULL,
-     OF(solid, follows), .names = "solid"},
-    VECTOR(PARAM_SOLID, solid, offset, "0,0,0",
-           "with follows: from that solid's position to this one's, along that solid's own axes"),
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0",
      "rotation about the fixed axes x, then y, then z; counter-clockwise for an eye that looks along the axis", NULL,
      OF(solid, shape.rotation_deg)},
+    VECTOR(PARAM_SOLID, solid, offset, "0,0,0",
+           "with follows: from that solid's position to this one's, along that solid's own axes"),
     LENGTH(radius, "1", "radius; cup: outer; cone: base; prism: circumradius; torus: major radius"),
     LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",

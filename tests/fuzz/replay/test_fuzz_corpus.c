@@ -16,9 +16,9 @@
 
 /* clang-format off */
 #define FUZZERS(X) \
-    X(animation) X(arguments) X(bmp) X(exr) X(films) X(gltf) X(hdr) X(http) X(jpeg) X(lesson) X(mesh_stream) X(mtl) \
-    X(obj) X(optical) X(package) X(pfm) X(ply) X(png) X(points) X(published) X(rows) X(runs) X(scene) X(script) \
-    X(shared) X(stl) X(study)
+    X(animation) X(arguments) X(bmp) X(exr) X(films) X(gltf) X(hdr) X(http) X(jpeg) X(lens) X(lesson) X(mesh_stream) \
+    X(mtl) X(obj) X(optical) X(package) X(pfm) X(ply) X(png) X(points) X(published) X(rows) X(runs) X(scene) \
+    X(script) X(shared) X(stl) X(study)
 /* clang-format on */
 
 typedef int fuzzer(const uint8_t *data, size_t size);
