@@ -80,6 +80,7 @@ scene: rod.yaml
 fit:
   parameters: {liquid.ior: {from: 1.2, to: 1.6}, vessel.ior: {from: 1.4, to: 1.6}}
   targets: {radiance: {value: 0.4, sigma: 0.1}, hits.rod: {set: {rod.position.x: 0.3}, value: 20}}
+  method: [bobyqa, damped]
   evaluations: 6
 END
 cat >small.study <<'END'
