@@ -1,7 +1,8 @@
 /* Scenes as opaque values: create, read, load, check, destroy. The folders of src/scene, each of which includes only
- * those before it: model (the scene in memory, its parameters and edits), file (scene files and shared scenes), assets
- * (the files that a scene names: meshes, textures, scripts of slimes), motion (slimes in time), package (a loaded scene
- * as bytes). Ownership: the caller releases a scene with scene_destroy. */
+ * those before it: model (the scene in memory, its parameters and edits), lens (lens prescriptions, and their solids),
+ * file (scene files and shared scenes), assets (the files that a scene names: meshes, textures, scripts of slimes),
+ * motion (slimes in time), package (a loaded scene as bytes). Ownership: the caller releases a scene with
+ * scene_destroy. */
 #pragma once
 
 #include "base/status.h"
