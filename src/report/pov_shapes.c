@@ -141,11 +141,12 @@ static void put_cylinder(const solid_shape *s, double e, FILE *out)
     fputs(" }", out);
 }
 
-/* The hollow goes on above the rim, so that no two surfaces coincide there. */
+/* The hollow goes on above the rim, and of a tube below it, so that no two surfaces coincide there. */
 static void put_cup(const solid_shape *s, double e, FILE *out)
 {
+    const double from = s->floor > 0.0 ? s->floor - e : -s->height;
     PUT(out, "difference { cylinder { y*#, y*#, # } cylinder { y*#, y*#, # }", e, s->height - e,
-        narrowed(s->radius, s->m, e), s->floor - e, 2.0 * s->height, s->inner_radius + e * fmax(s->m, 1.0));
+        narrowed(s->radius, s->m, e), from, 2.0 * s->height, s->inner_radius + e * fmax(s->m, 1.0));
     put_ellipse(s->m, out);
     fputs(" }", out);
 }

@@ -117,7 +117,7 @@ static ray_node traced(const scene *s, const lens_prescription *p, double x, dou
     return node;
 }
 
-/* A ray of 1e-5 focal lengths beside the axis: its aberration is below 1e-9 of the focal length. It is traced through
+/* A ray of 1e-5 focal lengths from the axis: its aberration is below 1e-9 of the focal length. It is traced through
  * the solids, the prediction is paraxial. */
 static void thin_pencils_through_the_solids_meet_the_paraxial_focus(void **state)
 {

@@ -6,7 +6,6 @@
  * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
  * (any text but 0), hole, name; all but radius and thickness may be missing. */
 #include "scene/lens/lens_files.h"
-#include "base/array.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -14,93 +13,11 @@
 #include "scene/model/names.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 enum { LENS_BYTES_MAX = 1 << 24 };
-
-/* --- common parts --- */
-
-status lens_wrong(const lens_reader *r, int word, const char *remedy, const char *what, ...)
-{
-    char text[400];
-    va_list list;
-    va_start(list, what);
-    vsnprintf(text, sizeof text, what, list);
-    va_end(list);
-    const status code = diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s", text);
-    diagnostic_locate(r->why, r->name, r->line, word >= 0 && word < r->count ? r->column[word] : 0);
-    return code;
-}
-
-void lens_note(lens_prescription *p, const char *format, ...)
-{
-    const size_t used = strlen(p->note);
-    char text[200];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    if (used + strlen(text) + 3 < sizeof p->note)
-        snprintf(p->note + used, sizeof p->note - used, "%s%s", used ? "; " : "", text);
-}
-
-void lens_divide(lens_reader *r, char *line, bool commas)
-{
-    const char *blanks = " \t\r", *start = line;
-    r->count = 0;
-    for (char *at = line; at && r->count < LENS_WORDS_MAX;) {
-        at += strspn(at, blanks);
-        if (!*at && !commas)
-            break;
-        char *end = at + strcspn(at, commas ? "," : blanks), *last = end;
-        const bool more = *end != 0;
-        while (commas && last > at && strchr(blanks, last[-1]))
-            last--;
-        *last = *end = 0;
-        r->word[r->count] = at;
-        r->column[r->count++] = (int)(at - start) + 1;
-        at = more ? end + 1 : NULL;
-    }
-}
-
-status lens_number(const lens_reader *r, int i, const char *what, double *out)
-{
-    if (i >= r->count)
-        return lens_wrong(r, -1, "complete the line", "%s is missing", what);
-    if (!number_parse_real(r->word[i], out) || !isfinite(*out))
-        return lens_wrong(r, i, "give a number, such as 12.5", "%s: '%.40s' is not a number", what, r->word[i]);
-    return STATUS_OK;
-}
-
-lens_surface *lens_append(lens_reader *r, status *code)
-{
-    lens_prescription *p = r->p;
-    if (p->count >= LENS_SURFACES_MAX) {
-        *code = lens_wrong(r, -1, "divide the system", "more than %d surfaces", LENS_SURFACES_MAX);
-        return NULL;
-    }
-    if (!GROW(p->surface, r->room, p->count + 1)) {
-        *code = out_of_memory(r->why);
-        return NULL;
-    }
-    lens_surface *s = &p->surface[p->count++];
-    *s = (lens_surface){.medium = {.kind = LENS_AIR, .glass_file = -1}, .line = r->line};
-    return s;
-}
-
-status lens_read_medium(const lens_reader *r, int i, const char *word, lens_medium *out)
-{
-    diagnostic bad = {.what = ""};
-    const status code = lens_medium_parse(word, r->glasses, out, &bad);
-    if (code == STATUS_BAD_INPUT && !bad.file[0])
-        return lens_wrong(r, i, bad.remedy, "%s", bad.what);
-    if (code != STATUS_OK && r->why)
-        *r->why = bad;
-    return code;
-}
 
 /* --- .dat --- */
 

@@ -165,7 +165,10 @@ void lens_prescription_complete(lens_prescription *p)
     const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
     for (size_t i = 0; i < p->count; i++) {
         lens_surface *s = &p->surface[i];
-        const double needed = 2.0 * (fabs(f.marginal[i]) + fabs(f.chief[i]));
+        /* of wide fields, paraxial rays are farther out than the surface reaches */
+        const double reach =
+            s->radius == 0.0 || s->conic <= -1.0 ? INFINITY : 1.9 * fabs(s->radius) / sqrt(1.0 + s->conic);
+        const double needed = fmin(2.0 * (fabs(f.marginal[i]) + fabs(f.chief[i])), reach);
         if (!(s->diameter > 0.0) && isfinite(needed))
             s->diameter = (int)i == p->stop ? f.stop_diameter : ROOM_FOR_REAL_RAYS * needed;
     }

@@ -3,44 +3,11 @@
 #include "scene/lens/lens_put.h"
 #include "scene/lens/lens_solids.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/objects.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-/* --- parameters by name (lens_put.h) --- */
-
-void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
-{
-    char path[2 * SCENE_NAME_MAX + 2], value[512];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(value, sizeof value, format, list);
-    va_end(list);
-    snprintf(path, sizeof path, "%s.%s", name, row);
-    THEN(t->code, scene_set_property(t->s, path, value, t->why));
-}
-
-void lens_put_number(lens_target *t, const char *name, const char *row, double value)
-{
-    char text[NUMBER_TEXT_MAX];
-    lens_put(t, name, row, "%s", number_format(value, text));
-}
-
-void lens_add_solid(lens_target *t, const char *shape, const char *name)
-{
-    shape_kind kind = {0};
-    THEN(t->code, scene_shape_named(shape, &kind, t->why));
-    THEN(t->code, scene_add_solid(t->s, name, kind, NULL, t->why));
-}
-
-bool lens_has(const scene *s, param_group group, const char *name)
-{
-    return object_find(s, group, name) >= 0;
-}
 
 /* --- the scene --- */
 
