@@ -13,8 +13,8 @@ colour(i) = i == 1 ? green : i == 2 ? blue : i == 3 ? vermillion : i == 4 ? purp
 field_value(f) = real(system(sprintf("awk -F, '$1 == \"fields\" && $3 == %d { s += $7*$7 } END { print sqrt(s) }' '%s'", f, rows)))
 label_of(f) = sprintf("field %d: %.4g %s", f, field_value(f), field_unit)
 
-left(i, n) = 0.08 + (i - 1)*0.925/n
-right(i, n) = left(i, n) + 0.925/n - 0.07
+left(i, n) = 0.088 + (i - 1)*0.917/n
+right(i, n) = left(i, n) + 0.917/n - 0.075
 place(i, n, top, bottom) = sprintf("set lmargin at screen %.4f; set rmargin at screen %.4f; set tmargin at screen %.4f; set bmargin at screen %.4f", left(i, n), right(i, n), top, bottom)
 
 set label 1 lens at screen 0.5,0.985 center font ",12" textcolor rgb ink
@@ -24,6 +24,10 @@ set title font ",8"
 set xlabel font ",7" offset 0,0.6
 set ylabel font ",7" offset 0.8,0
 unset key
+# Keeps the range of a panel without a value, where no ray arrives.
+$origin << END
+0,0
+END
 set multiplot
 
 # Ray fans and wavefronts by field.
@@ -36,14 +40,16 @@ do for [f=1:across] {
     set title label_of(f)
     set ylabel f == 1 ? "ray aberration, mm" : ""
     set xlabel ""
-    plot for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "e_tangential")):7 with lines lw 1.4 lc rgb colour(i), \
+    plot $origin using 1:2 with dots lc rgb "white" notitle, \
+        for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "e_tangential")):7 with lines lw 1.4 lc rgb colour(i), \
         for [i=1:words(waves)] rows using (curve("fan-sagittal", f, nm(i), "e_sagittal")):7 with lines lw 1.4 dt (4,3) lc rgb colour(i)
     if (f == 1) { unset label 1; unset label 2 }
     eval place(f, across, 0.770, 0.640)
     set title ""
     set ylabel f == 1 ? "wavefront, waves" : ""
     set xlabel "pupil"
-    plot for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "opd")):7 with lines lw 1.4 lc rgb colour(i), \
+    plot $origin using 1:2 with dots lc rgb "white" notitle, \
+        for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "opd")):7 with lines lw 1.4 lc rgb colour(i), \
         for [i=1:words(waves)] rows using (curve("fan-sagittal", f, nm(i), "opd")):7 with lines lw 1.4 dt (4,3) lc rgb colour(i)
 }
 
@@ -51,9 +57,10 @@ do for [f=1:across] {
 unset xzeroaxis
 unset grid
 set xlabel ""
-stats rows using (strcol(1) eq "spot" && strcol(6) eq "geo" ? column(7) : NaN) nooutput name "geo_"
-stats rows using (strcol(1) eq "spot" && strcol(6) eq "airy_radius" ? column(7) : NaN) nooutput name "airy_"
-most = 1.1*(geo_max > airy_max ? geo_max : airy_max)
+largest(quantity) = real(system(sprintf("awk -F, '$1 == \"spot\" && $6 == \"%s\" && $7 > most { most = $7 } END { print most + 0 }' '%s'", quantity, rows)))
+airy = largest("airy_radius")
+geo = largest("geo")
+most = 1.1*(geo > airy ? geo : airy)
 set xrange [-most:most]
 set yrange [-most:most]
 set xtics auto
@@ -63,9 +70,9 @@ set size ratio -1
 do for [f=1:across] {
     eval place(f, across, 0.585, 0.440)
     set ylabel f == 1 ? "spot, mm from the chief ray" : ""
-    set object 1 circle at 0,0 size airy_max front fs empty border lc rgb ink lw 0.8
+    set object 1 circle at 0,0 size airy front fs empty border lc rgb ink lw 0.8
     # dx and dy are rows in turn: x is kept until its y comes.
-    plot for [i=1:words(waves)] keep = 0.0 rows using \
+    plot $origin using 1:2 with dots lc rgb "white", for [i=1:words(waves)] keep = 0.0 rows using \
         (strcol(1) eq "spot-points" && strcol(6) eq "dx" ? (keep = column(7), NaN) : pick("spot-points", f, nm(i), "dy") ? keep : NaN):7 \
         with dots lc rgb colour(i)
 }
@@ -84,18 +91,21 @@ eval place(1, 3, 0.385, 0.235)
 set title "foci of narrow pencils"
 set xlabel sprintf("field, %s", field_unit)
 set ylabel "from the image, mm"
-plot rows using (curve("field-curves", 0, 0, "tangential")):7 with lines lt 1 title "tangential", \
+plot $origin using 1:2 with dots lc rgb "white" notitle, \
+    rows using (curve("field-curves", 0, 0, "tangential")):7 with lines lt 1 title "tangential", \
     rows using (curve("field-curves", 0, 0, "sagittal")):7 with lines lt 2 dt (4,3) title "sagittal"
 eval place(2, 3, 0.385, 0.235)
 set title "distortion"
 set ylabel "%"
 unset key
-plot rows using (curve("field-curves", 0, 0, "distortion")):7 with lines lt 1
+plot $origin using 1:2 with dots lc rgb "white" notitle, \
+    rows using (curve("field-curves", 0, 0, "distortion")):7 with lines lt 1
 eval place(3, 3, 0.385, 0.235)
 set title "focus by height in the pupil"
 set xlabel "pupil"
 set ylabel "from the image, mm"
-plot for [i=1:words(waves)] rows using (curve("longitudinal", 0, nm(i), "focus")):7 with lines lw 1.4 lc rgb colour(i)
+plot $origin using 1:2 with dots lc rgb "white" notitle, \
+    for [i=1:words(waves)] rows using (curve("longitudinal", 0, nm(i), "focus")):7 with lines lw 1.4 lc rgb colour(i)
 
 eval place(1, 3, 0.185, 0.045)
 set title "MTF with diffraction; sagittal dashed, limit dotted"
@@ -103,14 +113,16 @@ set xlabel "cycles/mm"
 set ylabel ""
 set yrange [0:1]
 set key top right font ",7" samplen 1.5 noreverse Right
-plot for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "tangential")):7 with lines lt f title label_of(f), \
+plot $origin using 1:2 with dots lc rgb "white" notitle, \
+    for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "tangential")):7 with lines lt f title label_of(f), \
     for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "sagittal")):7 with lines lt f dt (4,3) notitle, \
     rows using (curve("mtf-diffraction", 1, 0, "limit")):7 with lines lt 8 notitle
 eval place(2, 3, 0.185, 0.045)
 set title "light within a circle, with diffraction"
 set xlabel "radius, mm"
 set key bottom right
-plot for [f=1:across] rows using (curve("encircled", f, nm(1), "fraction")):7 with lines lt f title label_of(f)
+plot $origin using 1:2 with dots lc rgb "white" notitle, \
+    for [f=1:across] rows using (curve("encircled", f, nm(1), "fraction")):7 with lines lt f title label_of(f)
 eval place(3, 3, 0.185, 0.045)
 set title "Seidel sums by surface"
 set autoscale y

@@ -2,6 +2,7 @@
  * field. Pure, unless a function takes a bench: that borrows its model, and serves one thread. */
 #pragma once
 
+#include "base/array.h"
 #include "lens/lens.h"
 #include "render/inspect/probe.h"
 
@@ -138,7 +139,14 @@ typedef struct lens_study {
     double frequency_most;
 } lens_study;
 
-void lens_row_put(lens_report *r, lens_row row);
+static inline void lens_row_put(lens_report *r, lens_row row)
+{
+    if (r->failed || !GROW(r->row, r->room, r->count + 1)) {
+        r->failed = true;
+        return;
+    }
+    r->row[r->count++] = row;
+}
 
 void lens_seidel(lens_study *s);
 status lens_ghosts(lens_study *s, diagnostic *why);

@@ -1,7 +1,6 @@
 /* The sections of a report, and their order: what concerns the whole lens, then field by field, on several threads. */
 #include "lens/lens_private.h"
 
-#include "base/array.h"
 #include "base/thread_team.h"
 #include <math.h>
 #include <stdlib.h>
@@ -91,15 +90,6 @@ const lens_section *lens_section_at(size_t i)
 {
     return i < sizeof sections / sizeof sections[0] ? &sections[i]
                                                     : &sections[sizeof sections / sizeof sections[0] - 1];
-}
-
-void lens_row_put(lens_report *r, lens_row row)
-{
-    if (r->failed || !GROW(r->row, r->room, r->count + 1)) {
-        r->failed = true;
-        return;
-    }
-    r->row[r->count++] = row;
 }
 
 void lens_report_release(lens_report *r)

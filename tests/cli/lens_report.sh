@@ -61,6 +61,8 @@ if command -v gnuplot >/dev/null; then
     report triplet.csv "${quick[@]}" --figure page.svg >said && grep -q 'Cooke triplet' page.svg &&
         [[ -s page.rows.csv ]]
     verdict $? "a page of figures is drawn" "$(<said)"
+    report "$root/experiments/lenses/hubble.csv" "${quick[@]}" --figure hubble.png >said 2>&1 && [[ -s hubble.png ]]
+    verdict $? "where an obstruction takes the chief rays, too" "$(<said)"
 fi
 
 # --- what it refuses

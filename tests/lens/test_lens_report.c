@@ -430,6 +430,13 @@ static void a_plate_has_one_ghost_with_fresnels_weight(void **state)
     V += 2.0 * n / 100.0;
     V = V / (1.0 - d * V / n);
     assert_near(at(b, "ghosts", 2, 1.0, "focus") + 200.0, 1.0 / V, 1e-10);
+    /* Over a second plate: it passes side 1, side 2 three times, and both sides of the plate. */
+    b->p.surface[1].thickness = 10.0;
+    add(b, 0.0, 3.0, 1.8, 20.0);
+    add(b, 0.0, 180.0, 1.0, 20.0);
+    make(b);
+    const double S = pow(0.8 / 2.8, 2);
+    assert_near(at(b, "ghosts", 3, 1.0, "weight"), pow(1.0 - R, 4) * S * R * pow(1.0 - S, 2), 1e-15);
     end(b);
 }
 
