@@ -1,9 +1,9 @@
 /* Free memory: proc(5), cgroups(7), getrlimit(2); free disk space: statvfs(3); and sizes as text. */
 #include "base/budget.h"
 
-#include "base/control_group.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/os_process.h"
 #include <errno.h>
 #include <limits.h>
 #include <math.h>

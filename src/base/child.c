@@ -1,8 +1,7 @@
 /* Starting other programs: posix_spawn(3); and running one to its end, with its output. */
-#include "base/child.h"
+#include "base/os_process.h"
 
 #include "base/cancel.h"
-#include "base/os_process.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>

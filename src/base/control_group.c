@@ -1,5 +1,5 @@
 /* The groups of /proc/self/cgroup, and the limits in their folders. */
-#include "base/control_group.h"
+#include "base/os_process.h"
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Landlock: landlock(7), Documentation/userspace-api/landlock.rst of Linux. seccomp: seccomp(2),
  * Documentation/userspace-api/seccomp_filter.rst; a list of what is allowed, as a program of the classic Berkeley
  * Packet Filter. */
-#include "base/os_confine.h"
+#include "base/os_process.h"
 
 #include <errno.h>
 #include <fcntl.h>

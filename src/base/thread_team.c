@@ -1,8 +1,7 @@
 /* The thread team: a parallel loop over tasks on a worker pool. */
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 
 #include "base/os_process.h"
-#include "base/worker_pool.h"
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 /* The worker pool: the threads of all parallel work. A persistent pool starts its threads once and wakes them for each
  * run in a tree (worker i wakes 2i+1 and 2i+2), so that a thousand of them do not queue up behind one waker. Otherwise
  * threads are created and joined for each run, as in the published rod report. Workers follow the caller's cancellation
- * (base/cancel.h). base/thread_team.h is a loop on such a pool. Ownership: worker_pool_create allocates,
+ * (base/cancel.h). base/worker_pool.h is a loop on such a pool. Ownership: worker_pool_create allocates,
  * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts new
  * threads.
  *
@@ -18,6 +18,7 @@
 
 #include "base/status.h"
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct worker_pool worker_pool;
 typedef void worker_pool_task(void *context, int worker);
@@ -42,3 +43,23 @@ void worker_pool_end(worker_pool *p);
 /* For tasks, between parts of their work: a pool without threads (src/wasm) runs its workers on the calling thread, one
  * after another, and calls watch here when it is due. */
 void worker_pool_pause(worker_pool *p);
+
+/* A parallel loop on the threads of a worker pool (base/worker_pool.h) and on the calling thread. A team of one starts
+ * no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend on its
+ * size. thread_team_create allocates, thread_team_destroy frees; for one caller at a time. Members work under the
+ * cancellation of their caller (base/cancel.h). */
+
+typedef struct thread_team thread_team;
+typedef void thread_team_task(void *context, size_t index, int member); /* member: 0 .. thread_team_size - 1 */
+
+/* NULL: out of memory. threads: at least 1. */
+thread_team *thread_team_create(int threads);
+void thread_team_destroy(thread_team *t); /* NULL is allowed */
+int thread_team_size(const thread_team *t);
+
+/* The number of processing units that the process may use now (its CPU affinity), at least 1. */
+int thread_team_units(void);
+
+/* Calls task for each index 0 .. count - 1, in any order and by any member, and returns when all calls have
+ * returned. */
+void thread_team_run(thread_team *t, thread_team_task *task, void *context, size_t count);

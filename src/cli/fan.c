@@ -3,7 +3,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
-#include "report/fan_writers.h"
+#include "report/trace_writers.h"
 #include "scene/model/lights.h"
 
 #include <math.h>

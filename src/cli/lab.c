@@ -188,19 +188,19 @@ static void open_browser(const char *address, char **file)
         terminal_note(diagnostic_text(&reason, text, sizeof text));
 }
 
-static status run_lab(const lab_request *request, const char *folder, const char *results, diagnostic *why)
+static status run_lab(const lab_request *request, const char *scenes, const char *results, diagnostic *why)
 {
     lab *l = NULL;
     topology *machine = NULL;
-    char *file = NULL, *rescue = state_folder();
-    lab_settings settings = {.folder = folder,
+    char *file = NULL, *kept_in = state_folder();
+    lab_settings settings = {.folder = scenes,
                              .scene = request->scene,
                              .results = results,
-                             .rescue = rescue,
+                             .rescue = kept_in,
                              .port = (int)request->port,
                              .confine = true,
                              .threads = (int)request->threads};
-    status code = rescue ? scene_input_isa(&settings.level, why) : out_of_memory(why);
+    status code = kept_in ? scene_input_isa(&settings.level, why) : out_of_memory(why);
     if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)
         settings.threads = topology_pu_count(machine);
     topology_destroy(machine);
@@ -219,7 +219,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
     if (code == STATUS_OK && !terminal_stopped_by_user())
         lab_leave_unsaved(l);
     lab_stop(l);
-    free(rescue);
+    free(kept_in);
     return code;
 }
 
@@ -231,12 +231,12 @@ status command_lab(int argc, char **argv, diagnostic *why)
     if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
         code =
             system_error(why, STATUS_FAILURE, NULL, "cannot find the working folder", errno, "name it with --folder");
-    const char *folder = request.folder ? request.folder : chosen;
+    const char *scenes = request.folder ? request.folder : chosen;
     if (code == STATUS_OK && !request.results) {
-        results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);
+        results = strcmp(scenes, ".") == 0 ? strdup("results") : text_format("%s/results", scenes);
         code = results ? code : out_of_memory(why);
     }
-    THEN(code, run_lab(&request, folder, request.results ? request.results : results, why));
+    THEN(code, run_lab(&request, scenes, request.results ? request.results : results, why));
     free(chosen);
     free(results);
     return code;

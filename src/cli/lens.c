@@ -6,7 +6,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "scene/file/write.h"
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
 
 #include <math.h>
 #include <stdio.h>

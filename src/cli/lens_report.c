@@ -9,8 +9,8 @@
 #include "cli/terminal.h"
 #include "lens/lens.h"
 #include "report/json.h"
-#include "report/lens_rows.h"
-#include "scene/lens/lens_files.h"
+#include "report/param_rows.h"
+#include "scene/lens/lens_prescription.h"
 #include "study/plot/plot.h"
 
 #include <math.h>

@@ -1,5 +1,4 @@
 /* `cuvette machine`: hardware, clocks, and what disturbs measurements. */
-#include "report/machine.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/terminal.h"

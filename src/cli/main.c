@@ -1,5 +1,4 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
-#include "base/child.h"
 #include "base/float_environment.h"
 #include "base/installed.h"
 #include "base/json_build.h"

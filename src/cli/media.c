@@ -4,7 +4,7 @@
 #include "cli/options.h"
 #include "cli/terminal.h"
 #include "report/json.h"
-#include "report/media_rows.h"
+#include "report/param_rows.h"
 #include "scene/assets/optical_files.h"
 
 #include <stdbool.h>

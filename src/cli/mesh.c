@@ -10,7 +10,7 @@
 #include "geometry/hierarchy/hierarchy.h"
 #include "report/json.h"
 #include "report/mesh_writers.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

@@ -5,8 +5,8 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "report/report.h"
-#include "report/theory_rows.h"
 #include "scene/assets/slime.h"
 #include "scene/model/scene.h"
 

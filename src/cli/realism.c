@@ -4,8 +4,8 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "report/report.h"
-#include "report/theory_rows.h"
 
 #include <stdio.h>
 #include <string.h>

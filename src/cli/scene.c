@@ -7,7 +7,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "report/scene_export.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"

@@ -1,6 +1,6 @@
 /* Calls of squeue and sbatch, and their answers. */
 #include "base/cancel.h"
-#include "base/child.h"
+#include "base/os_process.h"
 #include "base/text.h"
 #include "cli/study.h"
 

@@ -7,7 +7,7 @@
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "measure/usage.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/run/estimate.h"
 #include "study/study.h"
 #include "study/summary/summary.h"

@@ -2,7 +2,7 @@
 #include "cli/options.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/study.h"
 #include "study/summary/verify.h"
 

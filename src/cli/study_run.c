@@ -2,7 +2,6 @@
  * program with --process=K, or alternate with another build. */
 #include "base/budget.h"
 #include "base/cancel.h"
-#include "base/child.h"
 #include "base/isa.h"
 #include "base/os_process.h"
 #include "base/random.h"

@@ -1,7 +1,7 @@
 /* Fans of rays, traced by the query's probe. */
 #include "render/inspect/fan.h"
-#include "engine/query_private.h"
-#include "report/fan_writers.h"
+#include "engine/engine_private.h"
+#include "report/trace_writers.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Optics against theory: the metrics and curves of a scene. */
 #include "engine/engine_private.h"
 #include "realism/realism.h"
-#include "report/theory_rows.h"
+#include "report/param_rows.h"
 
 #include <stdio.h>
 #include <stdlib.h>

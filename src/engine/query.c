@@ -2,7 +2,7 @@
  * is taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
  * allocation. */
 #include "base/number.h"
-#include "engine/query_private.h"
+#include "engine/engine_private.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 

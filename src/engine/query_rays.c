@@ -1,6 +1,6 @@
 /* Ray queries: the caller's rays are traced in batches by the tracer's own kernels, and their hits are converted to the
  * scene's terms. */
-#include "engine/query_private.h"
+#include "engine/engine_private.h"
 #include "geometry/regions/solid_tree.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Ray trees: traced by the query's probe, copied into the caller's form of a node; and the rays of a scene's beams,
  * each with its tree. */
 #include "base/file.h"
-#include "engine/query_private.h"
+#include "engine/engine_private.h"
 #include "render/inspect/beams.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"

@@ -3,7 +3,7 @@
 
 #include "base/budget.h"
 #include "base/cancel.h"
-#include "base/os_confine.h"
+#include "base/os_process.h"
 #include <pthread.h>
 #include <signal.h>
 #include <stddef.h>

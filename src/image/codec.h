@@ -97,7 +97,7 @@ int codec_exif_orientation(const unsigned char *bytes, size_t size);
 status codec_orient(image **img, int orientation, diagnostic *why);
 
 /* Runs a function in a new thread that can only compute: it opens nothing, sends nothing and starts nothing
- * (base/os_confine.h), whatever a damaged file makes it do. It has access to the memory of the process, so this is a
+ * (base/os_process.h), whatever a damaged file makes it do. It has access to the memory of the process, so this is a
  * second line of defence, weaker than the separate process of the importer; it costs 0.1 ms. If the thread cannot be
  * created or confined, the function runs unconfined. Cancelling the caller cancels it (base/cancel.h), and it has the
  * caller's memory budget. Signals are left to other threads. */

@@ -4,7 +4,6 @@
 #include "base/budget.h"
 #include "base/cancel.h"
 #include "image/codec.h"
-#include "image/compare_parts.h"
 #include "image/heatmap.h"
 #include <math.h>
 #include <stdbool.h>

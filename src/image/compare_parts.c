@@ -1,5 +1,5 @@
 /* The measures of compare.h that use neighbourhoods: structural similarity and FLIP, and their convolution. */
-#include "image/compare_parts.h"
+#include "image/compare.h"
 
 #include "base/cancel.h"
 #include "base/elementary.h"

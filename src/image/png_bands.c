@@ -2,7 +2,7 @@
 #include "image/codec.h"
 
 #include "base/cancel.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

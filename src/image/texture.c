@@ -1,5 +1,5 @@
 /* Textures: memory, mipmap, creation, reading, ownership, hash, packing. */
-#include "image/texture_parts.h"
+#include "image/texture.h"
 
 #include "base/array.h"
 #include "base/budget.h"

@@ -2,7 +2,7 @@
  * results. */
 #include "base/isa.h"
 #include "base/lanes.h"
-#include "image/texture_parts.h"
+#include "image/texture.h"
 #include <math.h>
 
 /* ---- a texel and a colour as vectors of four, in the vector extensions that gcc and clang share ---- */

@@ -7,7 +7,6 @@
 #include "base/float_environment.h"
 #include "base/json_build.h"
 #include "base/number.h"
-#include "base/os_confine.h"
 #include "base/os_process.h"
 #include <argp.h>
 #include <string.h>

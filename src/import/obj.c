@@ -3,7 +3,7 @@
 #include "import/obj.h"
 #include "base/array.h"
 #include "base/os_process.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "scene/lens/lens_files.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/model/open.h"
 
 /* NaN, or 0 for surface and field, where a row has no such key. Texts are constants. */

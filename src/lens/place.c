@@ -1,8 +1,7 @@
 /* Prescriptions from files and scenes, and the solids that stand for them. */
 #include "lens/lens.h"
 
-#include "scene/lens/lens_files.h"
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"

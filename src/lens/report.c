@@ -1,7 +1,7 @@
 /* The sections of a report, and their order: what concerns the whole lens, then field by field, on several threads. */
 #include "lens/lens_private.h"
 
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

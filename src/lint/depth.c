@@ -1,5 +1,5 @@
 /* Notes on light that render.depth and render.min_weight cut, estimated by small images at several depths. */
-#include "lint/parts.h"
+#include "lint/inert.h"
 #include "lint/probe_images.h"
 #include "scene/model/scene.h"
 

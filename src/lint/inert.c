@@ -96,9 +96,9 @@ static bool inert_faces(const inert_case *c)
     if (is_of_region(c)) { /* the solid is transparent if any face is */
         material clear = *c->m;
         clear.transparency = 1.0;
-        inert_case region = *c;
-        region.m = !solid_is_opaque(c->s, c->owner) && !is_named(c, "tint_distance") ? &clear : c->m;
-        return needs_ask(&region, PARAM_MATERIAL);
+        inert_case of_region = *c;
+        of_region.m = !solid_is_opaque(c->s, c->owner) && !is_named(c, "tint_distance") ? &clear : c->m;
+        return needs_ask(&of_region, PARAM_MATERIAL);
     }
     bool some = false;
     for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {

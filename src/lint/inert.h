@@ -5,8 +5,10 @@
 
 #include "base/counters.h"
 #include "lint/lint.h"
+#include "render/plan/plan.h"
 #include "scene/model/lights.h"
 #include "scene/model/params.h"
+#include "scene/model/scene.h"
 #include "scene/model/solids.h"
 
 typedef struct inert_case {
@@ -114,8 +116,8 @@ inert_rule moves_sky, black_lamp, depolarised, size_unsampled, lights_nothing, u
 
 /* --- rules of solids, meshes and textures: inert_objects.c --- */
 
-inert_rule overlaps_unseen, looks_the_same, unshaded, one_mesh, no_point_files, unused_mesh, at_rest,
-    unused_texture, of_floats, unused_data, not_of_file, by_data, not_turbid, no_data_layer;
+inert_rule overlaps_unseen, looks_the_same, unshaded, one_mesh, no_point_files, unused_mesh, at_rest, unused_texture,
+    of_floats, unused_data, not_of_file, by_data, not_turbid, no_data_layer;
 
 /* --- rules of a surface, c->m on c->owner: inert_material.c --- */
 
@@ -146,3 +148,28 @@ bool needs_ask(const inert_case *c, param_group group);
 bool needs_light(const inert_case *c);
 /* The table, for its test. */
 const needs_row *needs_rows(size_t *count);
+
+/* The parts of the linter, each of which examines a plan and reports notes. Private to src/lint. */
+
+typedef struct lint_input {
+    const scene *original; /* the caller's scene */
+    plan *probe;           /* plan of a copy of the scene with a small image */
+    isa level;
+    const note_sink *taker;
+} lint_input;
+
+/* Notes overlapping solids of equal priority, and narrow gaps. */
+status lint_neighbours(const lint_input *input, diagnostic *why);
+
+/* Notes a depth limit or a minimum weight of ray trees that cuts much light, or may do so. rays: of all small images
+ * together, at most. */
+status lint_depth(const lint_input *input, double rays, diagnostic *why);
+
+/* Notes a depth limit of random paths; the plan must be of the path integrator. */
+status lint_path_depth(const lint_input *input, diagnostic *why);
+
+/* The solid with the given priority index. */
+static inline const solid *lint_solid(const lint_input *input, int priority_index)
+{
+    return &input->original->solids[input->probe->geometry->regions[priority_index].solid];
+}

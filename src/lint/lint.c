@@ -2,7 +2,7 @@
  * cut. */
 #include "lint/lint.h"
 #include "geometry/shapes/shape.h"
-#include "lint/parts.h"
+#include "lint/inert.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The table of what each parameter needs to have an effect (inert.h), and its interpreter. */
 #include "lint/inert.h"
-#include "scene/model/objects.h"
-#include "scene/model/params_value.h"
+#include "scene/model/names.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

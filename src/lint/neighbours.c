@@ -7,7 +7,7 @@
 #include "geometry/regions/instance_set.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
-#include "lint/parts.h"
+#include "lint/inert.h"
 #include "scene/model/cover.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "render/frame/tracers.h"
 #include "render/plan/plan.h"
 #include <stdatomic.h>

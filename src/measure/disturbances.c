@@ -1,7 +1,7 @@
 /* Disturbances by the machine's settings and load. */
 #include "measure/usage.h"
 
-#include "base/control_group.h"
+#include "base/os_process.h"
 #include "measure/machine_noise.h"
 #include "measure/proc_file.h"
 #include <errno.h>

@@ -1,7 +1,6 @@
 /* A frame on the ranks of an MPI job. Rank 0 leads: it sends the order, runs the messenger on a thread, and collects
  * all tiles. The other ranks follow: their main thread is the messenger, and a second thread runs the job, whose pool
  * renders. */
-#include "mpi/frame.h"
 #include "base/cancel.h"
 #include "job/job.h"
 #include "measure/clock.h"

@@ -1,5 +1,5 @@
 /* Decides how many tiles a rank may hold, and records which. */
-#include "mpi/handout.h"
+#include "mpi/messenger.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,16 +1,16 @@
 /* The entry point of `cuvette-mpi`: commands of `cuvette` on the ranks of an MPI job. Rank 0 reads the command line and
  * writes the files; the other ranks follow it. */
 #include "base/cancel.h"
-#include "base/child.h"
 #include "base/float_environment.h"
 #include "base/installed.h"
 #include "base/json_build.h"
+#include "base/os_process.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/scene_input.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
-#include "mpi/frame.h"
+#include "mpi/tracing.h"
 
 #include <argp.h>
 #include <errno.h>

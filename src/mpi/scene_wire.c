@@ -1,5 +1,5 @@
 /* Broadcasts a package in parts. */
-#include "mpi/frame.h"
+#include "mpi/tracing.h"
 #include "scene/package/package.h"
 
 #include <mpi.h>

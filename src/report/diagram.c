@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "geometry/shapes/shape.h"
 #include "image/image.h"
-#include "report/svg.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include "scene/model/solids.h"

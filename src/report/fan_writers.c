@@ -1,12 +1,11 @@
 /* Writes a fan of rays as CSV, one row per ray; as JSON; and as a drawing in its plane: the section of the solids, the
  * ray paths, the caustic and the mean focus. */
-#include "report/fan_writers.h"
 #include "base/cancel.h"
 #include "base/csv.h"
 #include "render/inspect/ray_line.h"
 #include "report/diagram.h"
 #include "report/json.h"
-#include "report/svg.h"
+#include "report/trace_writers.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
 

@@ -1,5 +1,5 @@
 /* The report of a lens as text, CSV and JSON. */
-#include "report/lens_rows.h"
+#include "report/param_rows.h"
 
 #include "report/json.h"
 #include "report/report.h"

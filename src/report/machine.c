@@ -1,8 +1,8 @@
 /* Measures this machine's clocks and disturbances, and reports them as JSON. */
-#include "report/machine.h"
 #include "base/json_build.h"
 #include "measure/usage.h"
 #include "report/json.h"
+#include "report/report.h"
 #include <stdlib.h>
 
 #define LOAD_SAMPLE_S 0.5 /* 50 ticks of /proc/stat */

@@ -1,8 +1,8 @@
 /* Prints the catalogues of media and metals as tables, one entry in detail, or all as JSON. */
-#include "report/media_rows.h"
 #include "base/json_build.h"
 #include "base/number.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "report/report.h"
 #include <math.h>
 #include <stdarg.h>

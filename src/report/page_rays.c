@@ -1,9 +1,9 @@
 /* Collects the heaviest rays of a page, and writes them as SVG and as an HTML table. */
-#include "report/page_rays.h"
 #include "base/array.h"
 #include "image/image.h"
 #include "render/inspect/ray_line.h"
-#include "report/svg.h"
+#include "report/diagram.h"
+#include "report/page.h"
 #include "report/trace_writers.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/scene.h"

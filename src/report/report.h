@@ -3,13 +3,18 @@
  * when out of memory. */
 #pragma once
 
+#include "base/isa.h"
+#include "base/status.h"
 #include "image/compare.h"
 #include "job/quantities.h"
 #include "lesson/lesson.h"
+#include "measure/clock.h"
+#include "measure/topology.h"
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <sys/utsname.h>
 
 enum { REPORT_SCHEMA = 1 }; /* increases when a key changes its meaning or is removed */
 
@@ -52,3 +57,23 @@ json_t *lesson_result_json(const lesson *l, const lesson_result *r);
  * is wrapped. */
 void wrap_row(FILE *stream, int columns, const char *start, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+
+/* A report on this machine for measurements: processors, clocks, vector instruction sets, and current disturbances.
+ * Ownership: machine_measure allocates, machine_release frees, also after an error. */
+
+typedef struct machine_report {
+    topology *machine;
+    isa best, chosen;
+    clock_quality wall, cpu;
+    struct utsname kernel;
+    bool has_hardware_counters;
+    json_t *disturbances; /* list of texts */
+} machine_report;
+
+/* Takes half a second to measure the load of other processes. STATUS_BAD_INPUT for an invalid instruction set in the
+ * environment (CUVETTE_ISA). */
+status machine_measure(machine_report *a, diagnostic *why);
+void machine_release(machine_report *a);
+
+/* The output of `cuvette machine --json`; NULL when out of memory. */
+json_t *machine_json(const machine_report *a);

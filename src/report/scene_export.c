@@ -1,7 +1,7 @@
 /* Exports of scenes: notes on parameters that are set and not said, and the file. */
 #include "report/scene_export.h"
 #include "base/text.h"
-#include "scene/model/params_value.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>

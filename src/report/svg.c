@@ -1,5 +1,5 @@
 /* The SVG 1.1 writer. */
-#include "report/svg.h"
+#include "report/diagram.h"
 
 void svg_escape(FILE *out, const char *text)
 {

@@ -1,6 +1,6 @@
 /* Writes measured values next to theory: metrics and curves of optics, and the motion of slimes. */
-#include "report/theory_rows.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "scene/model/params.h"
 #include <math.h>
 

@@ -1,7 +1,6 @@
 /* A drawing of a ray tree with two panels: the plane of incidence of the first hit, and the view from above. */
 #include "base/cancel.h"
 #include "report/diagram.h"
-#include "report/svg.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
 

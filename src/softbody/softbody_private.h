@@ -7,7 +7,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "softbody/softbody.h"
 
 /* Vertices are processed and summed in chunks of a fixed size. */

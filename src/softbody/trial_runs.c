@@ -1,6 +1,6 @@
 /* Code that all trials use: bodies, steps, and observed quantities. */
 #include "base/cancel.h"
-#include "softbody/trials_private.h"
+#include "softbody/trials.h"
 #include <stdlib.h>
 
 softbody_settings trial_free_settings(const trials *t)

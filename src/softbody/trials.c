@@ -1,6 +1,6 @@
 /* The table of trials, and the selection of those to run. */
+#include "softbody/trials.h"
 #include "base/cancel.h"
-#include "softbody/trials_private.h"
 
 #include <stdio.h>
 #include <string.h>

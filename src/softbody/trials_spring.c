@@ -1,6 +1,6 @@
 /* Trials of a single spring, and the longest stable steps of a spring and of the toy. */
 #include "base/random.h"
-#include "softbody/trials_private.h"
+#include "softbody/trials.h"
 
 /* --- the period, decay and order of a spring ---
  *

@@ -1,7 +1,7 @@
 /* Trials of the toy, and of one mass: falls and bounces, a free toy, a toy at rest. */
 #include "measure/clock.h"
 #include "measure/statistics.h"
-#include "softbody/trials_private.h"
+#include "softbody/trials.h"
 
 /* --- falls and bounces: of one mass, compared with Galilei and Newton, and of the toy --- */
 

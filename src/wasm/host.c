@@ -1,8 +1,7 @@
 /* Substitutes for what a WebAssembly module lacks: other programs, confinement, hardware counters, hwloc, functions of
  * Linux, threads. */
-#include "base/child.h"
 #include "base/file.h"
-#include "base/os_confine.h"
+#include "base/os_process.h"
 #include "base/worker_pool.h"
 #include "measure/clock.h"
 #include "measure/topology_private.h"

@@ -1,7 +1,7 @@
 /* The parts of the laboratory that need a machine: studies, videos, rescued scenes, confinement. In a browser their
  * routes return an error that names the command of the program. */
 #include "web/api/api.h"
-#include "web/session/rescue.h"
+#include "web/session/session.h"
 #include "web/session/studies.h"
 #include "web/session/videos.h"
 

@@ -1,8 +1,8 @@
 /* Reads mesh files in a module, by the readers of the program's importer, which the browser's sandbox confines. See
- * scene/assets/mesh_file.h. */
-#include "scene/assets/mesh_file.h"
+ * scene/assets/mesh_stream.h. */
 #include "base/text.h"
 #include "import/plain.h"
+#include "scene/assets/mesh_stream.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "wasm/exports.h"
 #include "wasm/worker.h"
 #include "web/http/http_private.h"
-#include "web/page.h"
+#include "web/lab.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 #!/bin/bash
-# src/web/embed.sh FOLDER FILE...: prints a C file that embeds these files of FOLDER and defines the table of page.h,
+# src/web/embed.sh FOLDER FILE...: prints a C file that embeds these files of FOLDER and defines the table of lab.h,
 # with their paths in FOLDER. The assembler's .incbin reads the bytes; gcc and clang accept the same directive.
 set -euo pipefail
 declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
     [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')
 
-echo '#include "web/page.h"'
+echo '#include "web/lab.h"'
 folder=$1 number=0 rows=
 shift
 for file in "$@"; do

@@ -6,8 +6,6 @@
 #include "scene/model/scene.h"
 #include "web/api/api.h"
 #include "web/live/images.h"
-#include "web/page.h"
-#include "web/session/rescue.h"
 #include "web/session/session.h"
 #include "web/session/studies.h"
 #include "web/session/videos.h"

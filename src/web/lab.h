@@ -5,7 +5,8 @@
  * handles no signal. */
 #pragma once
 
-#include "web/session/settings.h"
+#include "web/http/http.h"
+#include "web/session/session.h"
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
 void lab_stop(lab *l); /* NULL is allowed */
@@ -16,3 +17,9 @@ void lab_leave_unsaved(lab *l);
 const char *lab_address(const lab *l);
 /* The HTTP server, for its port and token. */
 const struct http_server *lab_server(const lab *l);
+
+/* The files of the page (src/web/page/), embedded in the program by the Makefile under their names, for
+ * http_settings.files. Constants; no ownership, no errors. */
+
+extern const http_file page_files[];
+extern const size_t page_file_count;

@@ -9,7 +9,7 @@
 #include "base/cancel.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "geometry/hierarchy/layout.h"
 #include "geometry/mesh/mesh_generators.h"
 #include "image/compare.h"

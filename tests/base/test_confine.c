@@ -1,4 +1,4 @@
-/* Tests of the rights that threads and programs give up: base/os_confine.h, image/codec.h, and the importer's process.
+/* Tests of the rights that threads and programs give up: base/os_process.h, image/codec.h, and the importer's process.
  * What is given up cannot be had again, so that most tests run in a child process. Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,12 +8,12 @@
 
 #include "base/budget.h"
 #include "base/cancel.h"
-#include "base/os_confine.h"
+#include "base/os_process.h"
 #include "base/text.h"
 #include "image/codec.h"
 #include "image/image.h"
 #include "mesh_files.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-/* Tests of base/control_group.h with recorded files of /proc and /sys: version 1 and 2, nested groups, slices of
+/* Tests of base/os_process.h with recorded files of /proc and /sys: version 1 and 2, nested groups, slices of
  * systemd, containers; and of the environment of a run, which the limits are part of. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "base/control_group.h"
 #include "base/file.h"
+#include "base/os_process.h"
 #include "measure/machine_noise.h"
 #include "measure/usage.h"
 #include "study/rows/environment.h"

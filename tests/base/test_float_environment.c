@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "base/thread_team.h"
 #include "base/worker_pool.h"
 #include "cuvette.h"
 #include <fenv.h>

@@ -4,8 +4,8 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "measure/clock.h"
-#include "study/rows/checksum.h"
 #include "study/rows/row_files.h"
+#include "study/rows/rows.h"
 #include "study/rows/runs.h"
 #include "study/summary/summary.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The libFuzzer entry for lens files; the first byte chooses the kind of file. Any bytes give a prescription or one
  * error with a remedy; a prescription that is accepted becomes a scene, or is refused with a remedy, and can be
  * written. */
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
 
 #include "fuzz.h"
 #include <math.h>

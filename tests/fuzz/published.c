@@ -1,7 +1,7 @@
 /* The fuzzer of CSV files of others: the numbers that a figure shows next to the measured ones. */
 #include "base/csv.h"
 #include "fuzz.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 
 static void read_table(const char *path)

@@ -1,11 +1,11 @@
 /* The fuzzer of a study's tables: rows.csv, runs.json, excluded.csv, workers.csv and compare.csv of one study, from the
  * parts of the input. A first line "!" makes the checks of rows.csv right, so that changed values pass them. Rows are
  * read, verified, summarised and listed; none of it changes a file. */
+#include "study/rows/rows.h"
 #include "base/csv.h"
 #include "base/file.h"
 #include "fuzz.h"
-#include "study/rows/checksum.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/run/progress.h"
 #include "study/summary/summary.h"
 #include "study/summary/verify.h"

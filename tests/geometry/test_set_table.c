@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "geometry/regions/set_table.h"
 #include "random_stream.h"
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "image/texture_parts.h"
+#include "image/texture.h"
 
 #include <math.h>
 

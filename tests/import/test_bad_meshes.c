@@ -8,7 +8,7 @@
 
 #include "bad_mesh.h"
 #include "mesh_files.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>

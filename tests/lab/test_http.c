@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "http_fixture.h"
-#include "web/page.h"
+#include "web/lab.h"
 
 enum { BODY_MAX = 10000 };
 

@@ -8,7 +8,6 @@
 
 #include "render_fixture.h"
 #include "scene/model/camera.h"
-#include "scene/model/camera_moves.h"
 #include "scene/model/scene.h"
 #include "web/session/session.h"
 

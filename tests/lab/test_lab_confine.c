@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
-#include "base/os_confine.h"
+#include "base/os_process.h"
 #include "image/image.h"
 #include "lab_fixture.h"
 #include "scene/model/scene.h"

@@ -1,4 +1,4 @@
-/* Tests of web/session/rescue.h: a laboratory that is killed leaves its unsaved scene, and the next one offers it; a
+/* Tests of web/session/session.h: a laboratory that is killed leaves its unsaved scene, and the next one offers it; a
  * saved, clean or discarded one leaves nothing; a disk that fails is reported and stops nothing. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
-#include "mpi/handout.h"
+#include "mpi/messenger.h"
 
 enum { RANKS_MOST = 64 };
 

@@ -4,7 +4,6 @@
  * it locks the files, moves what is incomplete aside, and lists the run. */
 #include "base/cancel.h"
 #include "base/text.h"
-#include "study/rows/excluded.h"
 #include "study/rows/row_files.h"
 #include "study/study.h"
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "mesh_files.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/file/write.h"
 #include "scene/model/camera.h"
 #include "scene/model/medium.h"

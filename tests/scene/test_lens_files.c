@@ -15,7 +15,7 @@
 #include "base/text.h"
 #include "probe_fixture.h"
 #include "scene/file/write.h"
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 

@@ -7,7 +7,6 @@
 
 #include "base/number.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 #include "render_fixture.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/objects.h"
+#include "scene/model/names.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>

@@ -14,7 +14,7 @@
 #include "mesh_read.h"
 #include "render_fixture.h"
 #include "report/scene_export.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/model/edit/edit.h"
 #include <jansson.h>
 

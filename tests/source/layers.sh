@@ -90,7 +90,7 @@ report 'includes are from the own folder or lower layers' "$(check src)"
 plant base/a.h '"optics/interface.h"' 'higher layer'
 plant render/a.c '"cuvette.h"' 'higher layer'
 plant geometry/a.c '"measure/clock.h"' 'same layer'
-plant cli/a.c '"web/page.h"' 'same layer'
+plant cli/a.c '"web/lab.h"' 'same layer'
 plant cli/lab.c '"web/lab.h"' ''
 plant cli/lab.c '"web/http/http.h"' 'same layer'
 plant cli/a.c '"job/job.h"' ''

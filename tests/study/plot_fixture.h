@@ -1,7 +1,7 @@
 /* Figures of summaries that are made by hand. */
 #pragma once
 
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include "study_fixture.h"
 
 typedef struct hand {

@@ -1,7 +1,7 @@
-/* Tests of study/rows/excluded.h: rows that a person excludes from summaries. */
+/* Tests of study/rows/row_files.h: rows that a person excludes from summaries. */
 #include "study_fixture.h"
 
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/summary/summary.h"
 
 static const char text[] =

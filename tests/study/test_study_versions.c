@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "rows_fixture.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include "study/plan/identity.h"
 #include "study/rows/row_files.h"

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "base/isa.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "geometry/hierarchy/layout.h"
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The first rays of photons, from lamps and beams: their densities and their power. */
-#include "render/caustics/emission_private.h"
+#include "render/caustics/emission.h"
 
 #include "base/elementary.h"
 #include "base/lanes.h"

@@ -1,6 +1,6 @@
 /* The targets of photons: bounding balls of solids that deflect light, each lamp's cones around the balls, and the
  * division of the photons. */
-#include "render/caustics/emission_private.h"
+#include "render/caustics/emission.h"
 
 #include "geometry/shapes/shape.h"
 #include "optics/mueller.h"

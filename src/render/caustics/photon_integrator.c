@@ -5,7 +5,6 @@
  * 1950, section 13). */
 #include "render/caustics/emission.h"
 
-#include "render/shade/layered.h"
 #include "render/shade/rough.h"
 #include "render/shade/shading.h"
 #include <stdlib.h>

@@ -6,7 +6,6 @@
 #include "render/camera/camera_rays.h"
 #include "render/shade/exposure.h"
 #include "render/shade/media.h"
-#include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
 /* In a depth buffer, the view's continuation behind a layer is not counted as another ray. */

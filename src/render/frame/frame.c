@@ -1,6 +1,6 @@
 /* A frame: first photons and the integrator's steps, then workers render tiles; their counts and times are collected
  * into a result. */
-#include "render/frame/frame.h"
+#include "render/frame/tracers.h"
 
 #include "base/array.h"
 #include "base/cancel.h"

@@ -2,7 +2,7 @@
 #include "render/frame/renderer.h"
 
 #include "render/frame/caustics.h"
-#include "render/frame/frame.h"
+#include "render/frame/tracers.h"
 #include "render/shade/footprints.h"
 #include "scene/model/scene.h"
 #include <math.h>

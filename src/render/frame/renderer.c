@@ -2,7 +2,7 @@
 #include "render/frame/renderer.h"
 
 #include "base/elementary.h"
-#include "render/frame/frame.h"
+#include "render/frame/tracers.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 

@@ -4,10 +4,8 @@
 #include "render/shade/crystals.h"
 #include "render/shade/footprints.h"
 #include "render/shade/kernels.h"
-#include "render/shade/layered.h"
 #include "render/shade/media.h"
-#include "render/shade/mesh_shading.h"
-#include "render/shade/radiance.h"
+#include "render/shade/rough.h"
 #include "render/shade/shading.h"
 #include <pthread.h>
 #include <stdlib.h>

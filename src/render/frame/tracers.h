@@ -12,6 +12,9 @@
 
 #include "base/counters.h"
 #include "base/isa.h"
+#include "base/worker_pool.h"
+#include "render/frame/renderer.h"
+#include "render/plan/plan.h"
 #include "render/tracer/integrator.h"
 #include <stdatomic.h>
 
@@ -77,3 +80,21 @@ void tracer_pool_release(tracer_pool *pool, tracer *t);
 
 /* Sums the counters of the frame's tracers; call it after the frame. Returns true if one of them overflowed. */
 bool tracer_pool_collect(const tracer_pool *pool, ray_counters *sum);
+
+/* Internals of the renderer, used only in this folder. */
+
+struct renderer {
+    const topology *machine;
+    worker_pool *threads;
+    tracer_pool *tracers;
+};
+
+/* frame.c: renders into a result of render_result_create; state: the integrator's state for the frame. */
+status frame_run(renderer *r, const scene *s, const render_options *options, plan *p, void *state,
+                 render_result *result, diagnostic *why);
+
+/* render_result.c: allocates a result. render_map_create returns a map of zeros whose pages exist, or NULL when out of
+ * memory. */
+status render_result_create(const scene *s, const render_options *options, render_result **out, diagnostic *why);
+double *render_map_create(size_t pixels);
+film_space render_film_space(const scene *s);

@@ -4,7 +4,7 @@
 
 #include "optics/spectrum.h"
 #include "render/inspect/ray_line.h"
-#include "render/plan/ray_axes.h"
+#include "render/plan/sampling.h"
 #include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"

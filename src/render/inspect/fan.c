@@ -5,7 +5,7 @@
 #include "base/budget.h"
 #include "base/cancel.h"
 #include "base/elementary.h"
-#include "render/plan/ray_axes.h"
+#include "render/plan/sampling.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -8,9 +8,9 @@
 #include "geometry/regions/instance_set.h"
 #include "optics/interface.h"
 #include "render/shade/crystals.h"
-#include "render/shade/layered.h"
 #include "render/shade/media.h"
 #include "render/shade/polarisation.h"
+#include "render/shade/rough.h"
 #include "render/shade/shading.h"
 #include "scene/model/medium.h"
 #include <math.h>

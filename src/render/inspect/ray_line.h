@@ -1,4 +1,4 @@
-/* The lines of rays in drawings: one rule for images (beams.h), pages (report/page_rays.h), sections
+/* The lines of rays in drawings: one rule for images (beams.h), pages (report/page.h), sections
  * (report/diagram.h) and the laboratory (`far_end` of the JSON of a ray). A ray that meets a surface or a light ends
  * there. A ray that leaves the scene has no end: its line runs to the edge of the frame, or to its vanishing point if
  * that is in the frame. A ray that was cut has no line, since its end is unknown. Pure; cannot fail. */

@@ -22,11 +22,9 @@
 
 #include "geometry/rays.h"
 #include "render/shade/exposure.h"
-#include "render/shade/layered.h"
 #include "render/shade/media.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
+#include "render/shade/rough.h"
 #include "render/shade/shading.h"
 
 /* Clips the medium segments of a ray at the light. */

@@ -4,9 +4,7 @@
 
 #include "base/lanes.h"
 #include "render/shade/exposure.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
 /* --- points of lamps as seen from the gathered group, and shadow rays to them --- */

@@ -2,9 +2,8 @@
  * 1995). */
 #include "render/integrators/path.h"
 
-#include "render/shade/layered.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
+#include "render/shade/rough.h"
 #include "render/shade/shading.h"
 
 #define PI 3.14159265358979323846

@@ -4,10 +4,9 @@
 #include "base/elementary.h"
 #include "optics/mueller.h"
 #include "optics/phase_function.h"
-#include "render/shade/layered.h"
 #include "render/shade/media.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
+#include "render/shade/rough.h"
 #include "render/shade/shading.h"
 
 /* The estimate for choosing a lamp: light from all directions. */

@@ -6,7 +6,6 @@
 #include "render/shade/crystals.h"
 #include "render/shade/exposure.h"
 #include "render/shade/light_sampling.h"
-#include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
 /* Computes the branches of the gathered group; false if it has none. */

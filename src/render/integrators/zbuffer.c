@@ -5,7 +5,6 @@
 #include "render/camera/camera_rays.h"
 #include "render/shade/exposure.h"
 #include "render/shade/media.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
 #include <stdlib.h>

@@ -5,7 +5,6 @@
 #include "base/array.h"
 #include "base/cancel.h"
 #include "base/status.h"
-#include "render/photons/photon_tree.h"
 #include <stdlib.h>
 #include <string.h>
 

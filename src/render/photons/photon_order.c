@@ -1,6 +1,6 @@
 /* The order of a photon map: along Morton's curve, finest where most photons are. */
 #include "base/cancel.h"
-#include "render/photons/photon_tree.h"
+#include "render/photons/photon_map.h"
 
 #include <math.h>
 #include <stdlib.h>

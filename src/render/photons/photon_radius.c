@@ -3,7 +3,7 @@
  * A radius begins as the distance to the PHOTON_NEIGHBOURS-th neighbour. It is doubled while light within the wider
  * disc is uniform within its noise, after Lepski's rule for the width of kernels (Theory of Probability and its
  * Applications 35, 1990): the largest width whose estimate agrees with the estimates of all smaller widths. */
-#include "render/photons/photon_tree.h"
+#include "render/photons/photon_map.h"
 
 #include "base/cancel.h"
 #include <stdlib.h>

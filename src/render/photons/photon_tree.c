@@ -1,5 +1,5 @@
 /* The tree of a photon map: boxes, groups, and searches in it. */
-#include "render/photons/photon_tree.h"
+#include "render/photons/photon_map.h"
 
 #include "base/cancel.h"
 #include <stdlib.h>

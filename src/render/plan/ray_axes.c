@@ -1,5 +1,5 @@
 /* The axes of a fan or beam, and its rays: in a plane, or in a pattern over a disc or cone. */
-#include "render/plan/ray_axes.h"
+#include "render/plan/sampling.h"
 
 #include "base/elementary.h"
 #include "base/random.h"

@@ -4,7 +4,7 @@
 #include "optics/interface.h"
 #include "render/shade/exposure.h"
 #include "render/shade/footprints.h"
-#include "render/shade/mesh_shading.h"
+#include "render/shade/shading.h"
 #include <stdlib.h>
 
 bool crystals_begin(tracer *t)

@@ -1,7 +1,6 @@
 /* Exposure: the film's sums, the sky's light, shadow rays that arrive, and branches that the depth limit cuts off. */
 #include "render/shade/exposure.h"
 
-#include "render/shade/radiance.h"
 #include "render/shade/shading.h"
 
 /* The place of a sample key's pixel and replicate in the film. */

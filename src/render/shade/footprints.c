@@ -1,7 +1,7 @@
 /* Ray differentials, Igehy's equations 10 to 18, for the grid of samples. */
 #include "render/shade/footprints.h"
 
-#include "render/shade/mesh_shading.h"
+#include "render/shade/shading.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Metals and thin films in the tracer: exact at each ray's wavelength, or with the colours of a table in an rgb
  * film. */
-#include "render/shade/layered.h"
+#include "render/shade/rough.h"
 
 #include "render/shade/polarisation.h"
 #include <math.h>

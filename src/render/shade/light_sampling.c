@@ -2,9 +2,8 @@
 #include "render/shade/light_sampling.h"
 
 #include "base/elementary.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 #include <math.h>
 
 double area_light_radiance(const plan *p, int lamp, vec3 direction)

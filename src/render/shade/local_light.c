@@ -6,9 +6,7 @@
 #include "render/shade/exposure.h"
 #include "render/shade/footprints.h"
 #include "render/shade/kernels.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
-#include "render/shade/radiance.h"
 
 /* Adds the light that the material of a mesh file emits. Only RGB films have such materials. */
 static void expose_glow(tracer *t)

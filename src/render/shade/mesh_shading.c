@@ -1,9 +1,9 @@
 /* Shading of rays that hit meshes: hit points, normals, and the removal of light that an interpolated normal would
  * transmit through the triangle. */
-#include "render/shade/mesh_shading.h"
+#include "render/shade/shading.h"
 
 #include "render/shade/kernels.h"
-#include "render/shade/layered.h"
+#include "render/shade/rough.h"
 #include <stdlib.h>
 
 bool mesh_begin(tracer *t)

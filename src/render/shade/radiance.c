@@ -10,7 +10,7 @@
  * with each interface's unpolarised transmittance. It is straight, although light would be refracted. Its angle at an
  * interface is used as if on the side of the lower index: this is correct for a lamp far above water and for both faces
  * of a pane in air, and there is no total reflection on that side. */
-#include "render/shade/radiance.h"
+#include "render/shade/shading.h"
 
 #include "optics/interface.h"
 #include <stdlib.h>

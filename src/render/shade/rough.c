@@ -3,8 +3,6 @@
 
 #include "base/lanes.h"
 #include "optics/mueller.h"
-#include "render/shade/layered.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/shading.h"
 #include <math.h>
 

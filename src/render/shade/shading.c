@@ -6,9 +6,8 @@
 #include "render/shade/crystals.h"
 #include "render/shade/footprints.h"
 #include "render/shade/kernels.h"
-#include "render/shade/layered.h"
-#include "render/shade/mesh_shading.h"
 #include "render/shade/polarisation.h"
+#include "render/shade/rough.h"
 #include <string.h>
 
 void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)

@@ -1,7 +1,9 @@
 /* Shading functions for integrators: each works on the tracer's gathered group. */
 #pragma once
 
-#include "render/shade/layered.h"
+#include "geometry/rays.h"
+#include "geometry/regions/instance_set.h"
+#include "render/shade/rough.h"
 #include "render/tracer/tracer.h"
 
 /* Coverage of partial surfaces for rays that are neither divided nor drawn: a surface is there where its alpha is at
@@ -58,7 +60,7 @@ void cover_weigh_back(tracer *t, const cover_saved *saved);
  * straight on, as refracted ones. */
 void cover_branches(tracer *t, bool reflects);
 
-/* Whether the gathered group's surface is a metal or has a thin film (layered.h). */
+/* Whether the gathered group's surface is a metal or has a thin film (rough.h). */
 static inline bool surface_is_layered(const tracer *t)
 {
     return t->layered && t->layered->surface;
@@ -77,3 +79,57 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
 /* Gathers the rays of groups of one shading class, of the batch at `first` in the queue of a depth, computes their
  * colours, and calls the integrator for each shading material. */
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count);
+
+/* Basic radiance (L / n^2), for a plan whose rays carry it (render.radiance). Ownership: radiance_begin allocates the
+ * tracer's memory, radiance_end frees it. */
+
+typedef struct radiance_work radiance_work;
+
+bool radiance_begin(tracer *t); /* begins a frame; false when out of memory */
+void radiance_end(tracer *t);
+
+/* The factor of radiance emitted in the medium of a priority index, as the camera receives it, (n_eye / n)^2. */
+double radiance_scale(const plan *p, int64_t sample_key, int priority_index);
+/* radiance_scale for a medium of that index; 1 with classic radiance. */
+double radiance_scale_at_index(const plan *p, int64_t sample_key, double index);
+
+/* Multiply the gathered group's throughput by radiance_scale, and restore it; no effect with classic radiance. */
+void radiance_weigh(tracer *t);
+void radiance_weigh_back(tracer *t);
+
+/* Multiply t->batch.transmitted by the transmittances of the interfaces that a batch of shadow rays crosses; call them
+ * before and after its search. No effect with classic radiance. */
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sample_keys);
+void radiance_end_shadows(tracer *t);
+
+/* Shading of rays that hit meshes. Ownership: mesh_begin allocates the tracer's memory, mesh_end frees it. */
+
+typedef struct mesh_work {
+    mesh_scratch scratch;
+    instance_hit hits[ROW]; /* of the gathered group */
+    mesh_points points;
+    surface_mapping mapping[ROW]; /* if the material has a texture */
+    double glow_r[ROW], glow_g[ROW],
+        glow_b[ROW]; /* light that the gathered group's points emit, if the material glows */
+    group corner;    /* for Gouraud shading: the group with a corner of each triangle in place of the hit point */
+    lit_group corner_light;
+} mesh_work;
+
+bool mesh_begin(tracer *t); /* begins a frame; false when out of memory */
+void mesh_end(tracer *t);
+
+/* mesh_tint: multiplies the gathered group's colours by those of the vertices, interpolated at the hit points.
+ * mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light: removes light from behind the geometric
+ * triangle. mesh_bound_branches: corrects branches that an interpolated normal sends to the wrong side of the triangle.
+ * mesh_face_normal: the normal of the triangle of record k, which faces the ray. mesh_lets_out: true if a direction
+ * leads out of that triangle. mesh_corner_light: Gouraud's light. mesh_next_material: splits the group's list into
+ * faces of equal material. */
+void mesh_surface(tracer *t, int priority_index, const int *list);
+void mesh_tint(tracer *t);
+void mesh_bound_light(tracer *t);
+void mesh_bound_branches(tracer *t);
+vec3 mesh_face_normal(const tracer *t, int k);
+bool mesh_lets_out(const tracer *t, int k, vec3 direction);
+bool mesh_has_corner_light(const tracer *t, int priority_index);
+void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index);
+int mesh_next_material(const tracer *t, int *list, int count, int *slot);

@@ -2,7 +2,7 @@
  * cannot say is a note. */
 #include "base/text.h"
 #include "import/mesh_wire.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/model/camera.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"

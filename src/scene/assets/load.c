@@ -5,13 +5,12 @@
 #include "geometry/mesh/mesh_generators.h"
 #include "geometry/shapes/shape.h"
 #include "import/mesh_wire.h"
-#include "scene/assets/mesh_file.h"
+#include "scene/assets/mesh_stream.h"
 #include "scene/assets/optical_files.h"
 #include "scene/assets/slime.h"
-#include "scene/model/check.h"
 #include "scene/model/face_materials.h"
-#include "scene/model/objects.h"
-#include "scene/model/params_value.h"
+#include "scene/model/names.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

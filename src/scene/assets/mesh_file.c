@@ -1,11 +1,11 @@
 /* The child process cuvette-import, which reads a mesh file: started with pipes, read until a deadline, always reaped.
  * All descriptors are close-on-exec. The caller's signal handlers and other children are not affected. */
-#include "scene/assets/mesh_file.h"
 #include "base/cancel.h"
-#include "base/child.h"
 #include "base/installed.h"
+#include "base/os_process.h"
 #include "base/status.h"
 #include "base/text.h"
+#include "scene/assets/mesh_stream.h"
 
 #include <errno.h>
 #include <fcntl.h>

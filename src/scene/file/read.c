@@ -20,11 +20,9 @@
  * file. */
 #include "scene/file/document.h"
 #include "scene/file/read_lens.h"
-#include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
-#include "scene/model/place/new_objects.h"
+#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

@@ -8,8 +8,7 @@
 #include "scene/file/read_lens.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/lens/lens_solids.h"
-#include "scene/model/check.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>

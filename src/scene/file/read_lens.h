@@ -1,4 +1,4 @@
-/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_solids.h). Private to
+/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_prescription.h). Private to
  * this folder. */
 #pragma once
 

@@ -5,7 +5,6 @@
 #include "base/text.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>

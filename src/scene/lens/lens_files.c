@@ -1,14 +1,14 @@
-/* Reads lens files: tables (.dat of pbrt, .csv); lens_zmx.c reads those of Zemax (lens_files.h).
+/* Reads lens files: tables (.dat of pbrt, .csv); lens_zmx.c reads those of Zemax (lens_prescription.h).
  *
  * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
  * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
  * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns:
  * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
  * (any text but 0), hole, name; all but radius and thickness may be missing. */
-#include "scene/lens/lens_files.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/lens/lens_reader.h"
 #include "scene/model/names.h"
 

@@ -11,8 +11,10 @@
 #pragma once
 
 #include "scene/model/medium.h"
+#include "scene/model/open.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* EVEN_TERMS: coefficients of r^4, r^6, ... r^20. */
 enum { LENS_EVEN_TERMS = 9, LENS_SURFACES_MAX = 200, LENS_LIST_MAX = 24, LENS_NAME_MAX = 64 };
@@ -126,3 +128,75 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
 /* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below
  * what the beam needs at the stop), and the distance of the image if the last thickness is 0. */
 void lens_prescription_complete(lens_prescription *p);
+
+/* Files of lens prescriptions, by their ending:
+ *   .zmx   sequential lens files of Zemax, in UTF-8 or UTF-16; surfaces STANDARD and EVENASPH
+ *   .dat   tables of pbrt: lines of radius, thickness, index and diameter; radius 0 is the stop
+ *   .csv   tables with a header (lens_files.c states its keys and columns), which hold everything
+ * Ownership: the caller releases the prescription. Errors: STATUS_BAD_INPUT with the file, line, column and remedy. */
+
+/* Catalogue files of glasses (.agf), in which names are looked up that the catalogue of media lacks. Borrowed. */
+typedef struct lens_glasses {
+    const char *const *file; /* relative to the working folder */
+    size_t count;
+    const char *root; /* folder of all files that may be read (base/file.h); NULL: no restriction */
+} lens_glasses;
+
+/* The columns and keys of .csv files (lens_files.c). */
+enum { LENS_COLUMNS = 17, LENS_KEYS = 11 };
+extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
+
+/* Whether a path ends as such a file does. */
+bool lens_file_named(const char *path);
+
+/* Reads a file below glasses->root and completes it (lens_prescription_complete). */
+status lens_file_read(const char *path, const lens_glasses *glasses, lens_prescription *out, diagnostic *why);
+/* The same from its text; name is that of the file. */
+status lens_file_parse(const char *name, const char *text, size_t size, const lens_glasses *glasses,
+                       lens_prescription *out, diagnostic *why);
+
+/* The medium of a word: "" or air; a medium of the catalogue in any usual spelling (N-BK7); a glass of the files; n/V,
+ * such as 1.5168/64.2; a six-digit glass code; or a constant index. The remedy of the error has no position. */
+status lens_medium_parse(const char *word, const lens_glasses *glasses, lens_medium *out, diagnostic *why);
+/* The medium of n_d and V_d; V_d 0: a constant index. */
+lens_medium lens_medium_of_numbers(double n_d, double V_d);
+/* The same as a word that lens_medium_parse reads; text holds LENS_NAME_MAX bytes; returns text. */
+char *lens_medium_text(const lens_medium *m, char *text);
+
+/* Writes a prescription in the format of the path's ending. STATUS_BAD_INPUT if the format cannot hold it. */
+status lens_file_write(const lens_prescription *p, const char *path, FILE *out, diagnostic *why);
+
+/* Lens systems as solids of a scene, and back. Each element is a solid of shape lens with its own medium; cemented
+ * elements overlap, and the one with the higher priority has the true surface, so that no faces coincide.
+ * Ownership: everything is copied. Errors: STATUS_BAD_INPUT with the remedy; the scene is then partly changed. */
+
+/* Where and how a system is added to a scene. Its elements are NAME, NAME-2, NAME-3, ... in the order of the light;
+ * all other solids follow NAME (scene/model/solids.h), so that the system moves and turns with it: NAME-stop,
+ * NAME-hole-N for the holes of mirrors, NAME-mount-N and NAME-tube (rings that hold the elements, and the tube around
+ * them), and NAME-screen at the image. */
+typedef struct lens_placement {
+    const char *name;
+    vec3 position;     /* of the first vertex, scene units */
+    vec3 rotation_deg; /* takes +y to the direction of the light; 0: upwards */
+    double scale;      /* scene units per unit of the prescription */
+    int64_t priority;  /* the lowest that its solids have */
+    bool mount, screen;
+    const lens_glasses *glasses; /* the files of glasses that the prescription names; their paths are relative to the
+                                    scene's folder */
+} lens_placement;
+
+status lens_add_to_scene(scene *s, const lens_prescription *p, const lens_placement *at, diagnostic *why);
+
+/* A new scene about a system named objective, whose light travels along +z from a chequered wall at the distance of
+ * the object (50 focal lengths, if that is infinite): a camera behind the image that sees it through the exit pupil,
+ * a beam for each field (objective-field-N) and a screen, both not visible. Lengths are in the prescription's unit. */
+status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses, scene **out, diagnostic *why);
+
+/* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or "":
+ * all of the scene) must have one common axis, in the order of their positions along it. The stop is the cup
+ * NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that
+ * ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's
+ * data must be loaded (scene_load) for media of files. Fields, wavelengths and title are not in a scene's solids;
+ * they are those of its beams named NAME-field-N, or the axis and render.lambda_nm. *at, unless at is NULL: the frame
+ * of the system, and as its name that of the solid of its stop, NULL for none, borrowed. */
+status lens_of_scene(const scene *s, const char *name, lens_prescription *out, lens_placement *at, diagnostic *why);

@@ -1,4 +1,4 @@
-/* Words, numbers and media of lens files (lens_reader.h, lens_files.h). */
+/* Words, numbers and media of lens files (lens_reader.h, lens_prescription.h). */
 #include "scene/lens/lens_reader.h"
 #include "base/array.h"
 #include "base/file.h"

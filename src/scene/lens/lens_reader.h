@@ -2,7 +2,8 @@
  * folder. */
 #pragma once
 
-#include "scene/lens/lens_files.h"
+#include "scene/lens/lens_prescription.h"
+#include "scene/model/params.h"
 
 enum { LENS_WORDS_MAX = 64 };
 
@@ -32,3 +33,20 @@ status lens_read_medium(const lens_reader *r, int i, const char *word, lens_medi
 void lens_note(lens_prescription *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 status lens_read_zmx(lens_reader *r, char *text);
+
+/* Sets parameters of a scene by name, one after the other, until the first error. Private to this folder. */
+
+typedef struct lens_target {
+    scene *s;
+    status code; /* of the first step that failed */
+    diagnostic *why;
+} lens_target;
+
+/* Adds a solid, whose shape is a word of files. */
+void lens_add_solid(lens_target *t, const char *shape, const char *name);
+/* Sets NAME.ROW (scene_set_property). */
+void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void lens_put_number(lens_target *t, const char *name, const char *row, double value);
+/* Whether an object of the group has the name. */
+bool lens_has(const scene *s, param_group group, const char *name);

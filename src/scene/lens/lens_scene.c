@@ -1,7 +1,7 @@
-/* Reads a lens system back from the solids of a scene (lens_solids.h). */
+/* Reads a lens system back from the solids of a scene (lens_prescription.h). */
 #include "base/number.h"
 #include "geometry/shapes/shape.h"
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 

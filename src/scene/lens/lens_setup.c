@@ -1,7 +1,7 @@
-/* A complete scene about a lens system: camera, object, light and beams (lens_solids.h). */
+/* A complete scene about a lens system: camera, object, light and beams (lens_prescription.h). */
 #include "base/number.h"
-#include "scene/lens/lens_put.h"
-#include "scene/lens/lens_solids.h"
+#include "scene/lens/lens_prescription.h"
+#include "scene/lens/lens_reader.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 

@@ -1,12 +1,11 @@
-/* Adds the solids of a lens system to a scene (lens_solids.h). */
-#include "scene/lens/lens_solids.h"
+/* Adds the solids of a lens system to a scene (lens_prescription.h). */
 #include "base/number.h"
-#include "scene/lens/lens_put.h"
-#include "scene/model/check.h"
+#include "scene/lens/lens_prescription.h"
+#include "scene/lens/lens_reader.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/objects.h"
+#include "scene/model/names.h"
 #include "scene/model/params.h"
-#include "scene/model/place/new_objects.h"
+#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
 #include <ctype.h>
@@ -47,7 +46,7 @@ typedef struct lens_builder {
     size_t count;
 } lens_builder;
 
-/* --- parameters by name (lens_put.h) --- */
+/* --- parameters by name (lens_reader.h) --- */
 
 void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
 {

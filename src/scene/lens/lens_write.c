@@ -1,6 +1,6 @@
-/* Writes lens files (lens_files.h). */
+/* Writes lens files (lens_prescription.h). */
 #include "base/number.h"
-#include "scene/lens/lens_files.h"
+#include "scene/lens/lens_prescription.h"
 
 #include <ctype.h>
 #include <math.h>

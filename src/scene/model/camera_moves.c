@@ -1,7 +1,6 @@
 /* Camera moves, and their bounds, so that no gesture loses the scene: the camera stays above the grounds that it is
  * above, and its distance from the pivot stays within the scene's scale. A ground is a visible opaque plane that faces
  * up. Lengths in scene units. */
-#include "scene/model/camera_moves.h"
 #include "base/elementary.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"

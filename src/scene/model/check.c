@@ -1,12 +1,11 @@
 /* Checks parameters that depend on each other, names that must exist, and invalid combinations. The range of a single
  * value is checked when it is set (params_value.c). */
-#include "scene/model/check.h"
 #include "base/cancel.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
-#include "scene/model/objects.h"
+#include "scene/model/names.h"
 #include "scene/model/scene.h"
 
 #include <string.h>

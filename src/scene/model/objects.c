@@ -1,5 +1,4 @@
 /* Creates, copies, finds and removes the objects of every group, by a table of where the scene stores them. */
-#include "scene/model/objects.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/names.h"
 #include "scene/model/params.h"

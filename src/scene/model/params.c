@@ -5,8 +5,6 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/medium.h"
 #include "scene/model/names.h"
-#include "scene/model/objects.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
 #include <stddef.h>

@@ -1,11 +1,11 @@
 /* The value of one row of the table: to text, from text, and in the struct of its group. */
-#include "scene/model/params_value.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "optics/coating.h"
 #include "optics/media.h"
-#include "scene/model/check.h"
 #include "scene/model/material.h"
+#include "scene/model/params.h"
+#include "scene/model/scene.h"
 
 #include <stdarg.h>
 #include <stdio.h>

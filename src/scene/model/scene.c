@@ -2,11 +2,11 @@
 #include "scene/model/scene.h"
 #include "base/elementary.h"
 #include "base/file.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "geometry/shapes/shape.h"
-#include "scene/model/objects.h"
+#include "scene/model/names.h"
 #include "scene/model/open.h"
-#include "scene/model/params_value.h"
+#include "scene/model/params.h"
 
 #include <stdlib.h>
 #include <string.h>

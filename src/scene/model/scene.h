@@ -7,6 +7,7 @@
 #include "scene/model/lights.h"
 #include "scene/model/names.h"
 #include "scene/model/open.h"
+#include "scene/model/params.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/solids.h"
 #include "scene/model/view_settings.h"
@@ -82,3 +83,18 @@ double scene_rays_bound(const render_settings *r);
 
 /* The work of a slime: steps to its time_s, times masses. */
 double slime_work(const mesh_entry *m);
+
+/* The parts of scene_check for one object, so that a reader can locate an error in a file. Pure. */
+
+/* Fails if an object of the scene has that name. */
+status check_name_is_free(const scene *s, const char *name, diagnostic *why);
+
+/* Checks one object and its references; index is 0 for render, camera and background. */
+status check_object(const scene *s, param_group group, size_t index, diagnostic *why);
+
+/* Fails if the scene has too many objects of a kind, or primitives. */
+status check_limits(const scene *s, diagnostic *why);
+
+/* Checks the image of a sky that was just read (image_check_light) and its brightness, replaces small negative
+ * values by 0, notes that, and sets sky->brightest. path: for the diagnostic. */
+status sky_take(background *sky, const char *path, diagnostic *bad);

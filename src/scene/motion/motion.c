@@ -4,9 +4,8 @@
 #include "measure/clock.h"
 #include "scene/assets/slime.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
-#include "scene/motion/motion_private.h"
+#include "scene/motion/motion_hands.h"
 
 #include <math.h>
 #include <stdio.h>

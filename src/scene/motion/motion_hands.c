@@ -3,7 +3,6 @@
 #include "base/cancel.h"
 #include "measure/clock.h"
 #include "scene/model/scene.h"
-#include "scene/motion/motion_private.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,6 +7,8 @@
  * indexed by the body's hand numbers. Errors as in softbody/softbody.h. */
 #pragma once
 
+#include "scene/assets/slime.h"
+#include "scene/model/scene.h"
 #include "scene/motion/motion.h"
 
 typedef struct motion_place {
@@ -45,3 +47,35 @@ vec3 motion_hand_offset(const motion_hand *h, vec3 by);
  * hands stay where they are. */
 status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, const load_watch *watch,
                               diagnostic *why);
+
+/* A simulated scene, shared by motion.c and motion_hands.c. */
+
+/* The scene's data of a slime before the simulation, to be restored. */
+typedef struct original_slime {
+    double time_s;
+    const mesh *data; /* one reference; NULL for none */
+    softbody_quantities account;
+    double motion_s;
+} original_slime;
+
+typedef struct moving_slime {
+    slime x;
+    size_t entry;            /* index in scene.meshes */
+    uint64_t steps;          /* steps that scene_motion_report has counted */
+    double time_s;           /* time_s of the entry */
+    char *name, *parameters; /* of the entry, to find an equal slime in another scene */
+    original_slime original;
+    const struct mesh *surface; /* while detached: one reference; NULL for none */
+} moving_slime;
+
+struct scene_motion {
+    scene *s; /* NULL: detached */
+    moving_slime *slimes;
+    size_t count;
+    scene_motion_report last;
+};
+
+static inline mesh_entry *motion_entry(const scene_motion *m, const moving_slime *one)
+{
+    return &m->s->meshes[one->entry];
+}

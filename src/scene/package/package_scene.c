@@ -1,7 +1,6 @@
 /* Writes and reads the contents of a package: the scene's text, path and limits, and all loaded data. */
 #include "geometry/hierarchy/hierarchy.h"
 #include "image/texture.h"
-#include "scene/model/check.h"
 #include "scene/model/scene.h"
 #include "scene/package/package.h"
 

@@ -16,7 +16,7 @@
 #include "base/number.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "study/fit/read_parts.h"
+#include "study/fit/fit.h"
 #include "study/plan/grid.h"
 #include "study/plan/identity.h"
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "realism/realism.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
-#include "study/fit/read_parts.h"
+#include "study/fit/fit.h"
 #include "study/plan/grid.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,12 +1,12 @@
 /* The evaluations of a fit: in memory, and as rows of results/<study>/fit.csv, which is appended, flushed, and never
  * changed. A row is used again for the same point if what is measured (fit.identity) and the build are the same. */
+#include "study/rows/rows.h"
 #include "base/array.h"
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/text.h"
 #include "study/fit/fit.h"
-#include "study/rows/checksum.h"
 #include "study/rows/table.h"
 #include <inttypes.h>
 #include <math.h>

@@ -7,7 +7,6 @@
 #include "base/text.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"
 #include <stdio.h>

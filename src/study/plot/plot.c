@@ -1,10 +1,9 @@
 /* Figures of a study: the steps from the summary to a script, and gnuplot. */
 #include "study/plot/plot.h"
-#include "base/child.h"
 #include "base/file.h"
+#include "base/os_process.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "study/plot/plot_parts.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

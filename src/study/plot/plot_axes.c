@@ -3,7 +3,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "study/plan/grid.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

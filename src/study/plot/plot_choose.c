@@ -1,5 +1,5 @@
 /* Chooses the kind of a figure, and which parameters become the x axis, lines and panels. */
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

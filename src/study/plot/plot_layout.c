@@ -1,7 +1,7 @@
 /* Computes the sizes of a figure, in CSS pixels: panels in a grid, the title above, the key or the color bar on the
  * right, captions below. */
 #include "base/text.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

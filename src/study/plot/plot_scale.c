@@ -1,7 +1,7 @@
 /* Finds the columns and units of a figure's quantities, and chooses their scales. */
 #include "base/text.h"
 #include "scene/model/params.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

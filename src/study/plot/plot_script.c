@@ -1,7 +1,7 @@
 /* Writes the gnuplot script of a figure. */
 #include "base/file.h"
 #include "base/number.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

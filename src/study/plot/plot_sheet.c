@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "study/plan/keep.h"
-#include "study/plot/plot_parts.h"
+#include "study/plot/plot.h"
 #include "study/rows/row_files.h"
 #include <math.h>
 #include <stdio.h>

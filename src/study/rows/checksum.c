@@ -1,6 +1,6 @@
 /* Hashes the values of a row by column name, and chains the checksums of the rows of a run. */
-#include "study/rows/checksum.h"
 #include "base/hash.h"
+#include "study/rows/rows.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

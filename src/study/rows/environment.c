@@ -1,6 +1,5 @@
 /* Reads the facts of a run's environment from the files of the system, and hashes them into its key. */
 #include "study/rows/environment.h"
-#include "base/control_group.h"
 #include "base/hash.h"
 #include "base/installed.h"
 #include "base/os_process.h"

@@ -1,10 +1,10 @@
 /* Reads the list of excluded rows, looks up rows in it, and adds rows to it. */
-#include "study/rows/excluded.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/open.h"
 #include "study/plan/grid.h"
+#include "study/rows/row_files.h"
 #include "study/rows/rows.h"
 #include "study/rows/table.h"
 #include <stdlib.h>

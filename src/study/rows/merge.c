@@ -1,7 +1,7 @@
 /* Merges the row files of all shards into one: every line of every file once, in the order of runs. */
 #include "base/file.h"
-#include "study/rows/checksum.h"
 #include "study/rows/row_files.h"
+#include "study/rows/rows.h"
 #include "study/rows/table.h"
 #include <stdlib.h>
 #include <string.h>

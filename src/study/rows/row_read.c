@@ -3,8 +3,8 @@
 #include "base/number.h"
 #include "scene/model/open.h"
 #include "study/plan/identity.h"
-#include "study/rows/checksum.h"
 #include "study/rows/row_files.h"
+#include "study/rows/rows.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "study/run/run_state.h"
 #include "base/cancel.h"
 #include "base/file.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"
 #include "study/plan/grid.h"

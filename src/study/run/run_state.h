@@ -4,14 +4,14 @@
 
 #include "base/budget.h"
 #include "job/job.h"
-#include "study/rows/checksum.h"
 #include "study/rows/compare_rows.h"
 #include "study/rows/row_files.h"
+#include "study/rows/rows.h"
 #include "study/rows/runs.h"
 #include "study/rows/table.h"
 #include "study/run/progress.h"
 
-/* A file of rows that this run appends to, and the chain of their checksums (study/rows/checksum.h). */
+/* A file of rows that this run appends to, and the chain of their checksums (study/rows/rows.h). */
 typedef struct row_table {
     table *file; /* NULL: closed */
     checksum_columns columns;

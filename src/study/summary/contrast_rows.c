@@ -1,5 +1,5 @@
 /* Reads and sorts the rows of one side of a comparison. */
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/summary/contrast_parts.h"
 #include <math.h>
 #include <stdlib.h>

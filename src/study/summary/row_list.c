@@ -1,7 +1,7 @@
 /* Writes all rows of a study as one CSV table, each with its environment and whether summaries leave it out. */
 #include "base/file.h"
 #include "base/text.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/summary/summary.h"
 #include <stdlib.h>
 #include <string.h>

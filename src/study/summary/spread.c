@@ -1,6 +1,6 @@
 /* Writes medians and intervals of columns of rows.csv, or of quotients of two columns, by cell and environment. */
 #include "study/plan/grid.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/rows/row_quantity.h"
 #include "study/summary/summary.h"
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "scene/model/open.h"
 #include "study/plan/grid.h"
 #include "study/rows/compare_rows.h"
-#include "study/rows/excluded.h"
+#include "study/rows/row_files.h"
 #include "study/rows/row_quantity.h"
 #include "study/rows/rows.h"
 #include <math.h>

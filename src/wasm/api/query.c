@@ -1,9 +1,8 @@
 /* Ray queries, ray trees and fans for scripts. A script's ray is 7 numbers: origin, direction, reach. */
 #include "base/json_build.h"
 #include "base/text.h"
-#include "engine/query_private.h"
+#include "engine/engine_private.h"
 #include "render/inspect/fan.h"
-#include "report/fan_writers.h"
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"

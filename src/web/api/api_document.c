@@ -5,15 +5,15 @@
 #include "base/text.h"
 #include "lint/lint.h"
 #include "report/json.h"
-#include "report/media_rows.h"
+#include "report/param_rows.h"
 #include "report/report.h"
 #include "scene/file/shared.h"
 #include "scene/file/write.h"
-#include "scene/model/camera_moves.h"
+#include "scene/model/camera.h"
 #include "scene/model/open.h"
 #include "scene/model/params.h"
 #include "web/api/api.h"
-#include "web/session/rescue.h"
+#include "web/session/session.h"
 
 #include <math.h>
 #include <stdlib.h>

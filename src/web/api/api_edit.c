@@ -3,10 +3,9 @@
 #include "base/json_build.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
-#include "scene/model/place/new_objects.h"
+#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 #include "web/api/api.h"
 

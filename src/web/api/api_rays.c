@@ -5,10 +5,9 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "lint/lint.h"
-#include "report/fan_writers.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "report/report.h"
-#include "report/theory_rows.h"
 #include "report/trace_writers.h"
 #include "web/api/api.h"
 

@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "measure/clock.h"
 #include "report/json.h"
-#include "report/theory_rows.h"
+#include "report/param_rows.h"
 #include "scene/assets/slime.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"

@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "report/json.h"
-#include "report/machine.h"
+#include "report/report.h"
 #include "scene/model/params.h"
 #include "study/rows/row_files.h"
 #include "study/summary/summary.h"

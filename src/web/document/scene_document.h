@@ -5,7 +5,7 @@
  * copy during a change. Errors: STATUS_BAD_INPUT, or STATUS_FAILURE if memory runs out; the scene is then unchanged. */
 #pragma once
 
-#include "scene/model/camera_moves.h"
+#include "scene/model/camera.h"
 #include "web/document/folder.h"
 
 #include <stdint.h>

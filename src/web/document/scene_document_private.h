@@ -2,7 +2,7 @@
  * Private to them. */
 #pragma once
 
-#include "scene/model/camera_moves.h"
+#include "scene/model/camera.h"
 #include "scene/model/view_settings.h"
 #include "web/document/scene_document.h"
 

@@ -2,7 +2,6 @@
  * folder of unsaved scenes and a temporary folder. They can read and run the program's files, the system's, and the
  * folders in PATH, but no other files, such as those of other projects or of the user's home. */
 #include "base/installed.h"
-#include "base/os_confine.h"
 #include "base/os_process.h"
 #include "base/status.h"
 #include "base/text.h"

@@ -1,9 +1,9 @@
 /* Figures of a study: their names, scripts and SVG files. To draw them, the tables of the study are written and
  * plots/draw.sh is run. */
 #include "base/cancel.h"
-#include "base/child.h"
 #include "base/file.h"
 #include "base/json_build.h"
+#include "base/os_process.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "scene/model/open.h"

@@ -1,5 +1,4 @@
 /* The thread that keeps the unsaved scene, and the scenes of laboratories that died, which are offered. */
-#include "web/session/rescue.h"
 #include "base/cancel.h"
 #include "base/float_environment.h"
 #include "base/json_build.h"
@@ -9,6 +8,7 @@
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include "web/document/kept_scenes.h"
+#include "web/session/session.h"
 #include "web/session/studies.h"
 
 #include <pthread.h>

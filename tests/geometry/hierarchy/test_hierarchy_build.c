@@ -11,7 +11,7 @@
 
 #include "base/isa.h"
 #include "base/lanes.h"
-#include "base/thread_team.h"
+#include "base/worker_pool.h"
 #include "geometry/hierarchy/layout.h"
 #include "hierarchy_fixture.h"
 #include "hierarchy_scenes.h"

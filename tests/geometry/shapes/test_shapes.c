@@ -11,7 +11,7 @@
 #include "geometry/scene_geometry.h"
 #include "geometry/shapes/shape.h"
 #include "random_stream.h"
-#include "scene/model/params_value.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>

@@ -16,7 +16,6 @@
 #include "render/inspect/ray_line.h"
 #include "render_fixture.h"
 #include "scene/model/camera.h"
-#include "scene/model/camera_moves.h"
 #include "scene/model/scene.h"
 #include "zbuffer_fixture.h"
 

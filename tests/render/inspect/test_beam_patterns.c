@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "render/inspect/beams.h"
-#include "render/plan/ray_axes.h"
+#include "render/plan/sampling.h"
 #include "render_fixture.h"
 
 #define PI 3.14159265358979323846

@@ -9,7 +9,7 @@
 
 #include "random_stream.h"
 #include "render/inspect/fan.h"
-#include "render/plan/ray_axes.h"
+#include "render/plan/sampling.h"
 #include "render_fixture.h"
 
 /* Pencils and fans against geometrical optics. */

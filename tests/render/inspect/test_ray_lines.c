@@ -16,8 +16,7 @@
 #include "render/inspect/fan.h"
 #include "render/inspect/ray_line.h"
 #include "render_fixture.h"
-#include "report/fan_writers.h"
-#include "report/page_rays.h"
+#include "report/page.h"
 #include "report/trace_writers.h"
 #include "scene/model/camera.h"
 

@@ -2,11 +2,8 @@
 #include "scene/model/edit/edit.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
-#include "scene/model/check.h"
 #include "scene/model/names.h"
-#include "scene/model/objects.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

@@ -10,7 +10,7 @@
 #include "scene/model/params.h"
 
 /* Append an object to its section; scene_add_solid is for solids. The name must be valid and unused
- * (scene/model/check.h), and the limits of a scene apply. index may be NULL. */
+ * (scene/model/scene.h), and the limits of a scene apply. index may be NULL. */
 status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why);
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
 

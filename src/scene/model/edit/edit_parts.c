@@ -5,7 +5,7 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/params_value.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>
@@ -182,7 +182,7 @@ static int length_power(const param *row)
     if (row->type != PARAM_REAL && row->type != PARAM_VECTOR)
         return 0;
     if (strncmp(row->unit, inverse, sizeof inverse - 1) == 0)
-        return -(row->unit[sizeof inverse - 1] - '0');
+        return -atoi(row->unit + sizeof inverse - 1);
     return strcmp(row->unit, "scene units") == 0;
 }
 

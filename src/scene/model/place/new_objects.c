@@ -1,14 +1,11 @@
-/* Adds objects with a suitable name, size, place and colour, and copies objects (new_objects.h). */
-#include "scene/model/place/new_objects.h"
+/* Adds objects with a suitable name, size, place and colour, and copies objects (placement.h). */
 #include "base/file.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
-#include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/face_materials.h"
-#include "scene/model/objects.h"
+#include "scene/model/names.h"
 #include "scene/model/params.h"
-#include "scene/model/params_value.h"
 #include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
