@@ -41,7 +41,8 @@ solids:
   glass:
     {shape: lens, medium: bk7, transparency: 1, diameter: 1, position: [1.2, 0.8, 0], radius_1: 1.5, radius_2: -1.5}
 END
-printf '%s\n' 'pupil, 10' 'field_deg, 0, 5' 'radius, thickness, medium, diameter' '50, 4, bk7, 14' '-50, 46, , 14' >lens.csv
+printf '%s\n' 'pupil, 10' 'field_deg, 0, 5' 'radius, thickness, medium, diameter' '50, 4, bk7, 14' \
+    '-50, 46, , 14' >lens.csv
 cuvette mesh --generate box -o box.obj
 cuvette mesh --generate box -f ply -o box.ply
 mkdir lessons
