@@ -257,7 +257,7 @@ static void objects_are_added_moved_turned_and_removed(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* In ambient light only, a white wall with a texture of one texel shows that texel's light; so does a clone. */
+/* In ambient light only, a white wall with a texture of one one_pixel shows that one_pixel's light; so does a clone. */
 static void a_texture_from_memory_is_visible(void **state)
 {
     (void)state;
@@ -266,13 +266,13 @@ static void a_texture_from_memory_is_visible(void **state)
         {"camera.position", "0,0,-5"}, {"camera.target", "0,0,0"}, {"background.ambient", "1,1,1"},
         {"wall.color", "1,1,1"},       {"wall.ambient", "1"},      {"wall.diffuse", "0"},
         {"wall.specular", "0"},        {"wall.texture", "paint"}};
-    const float texel[3] = {0.25F, 0.5F, 0.75F};
+    const float one_pixel[3] = {0.25F, 0.5F, 0.75F};
     float seen[3];
     cuvette_diagnostic why;
     cuvette_engine *engine = make_engine();
     cuvette_scene *s, *clone;
     fine(cuvette_scene_create(&s, &why), &why);
-    fine(cuvette_scene_add_pixels(s, "paint", 1, 1, texel, &why), &why);
+    fine(cuvette_scene_add_pixels(s, "paint", 1, 1, one_pixel, &why), &why);
     assert_string_equal(cuvette_scene_name(s, CUVETTE_TEXTURE, 0), "paint");
     fine(cuvette_scene_add_solid(s, "wall", "box", NULL, &why), &why);
     for (size_t i = 0; i < COUNT(set); i++)
@@ -289,7 +289,7 @@ static void a_texture_from_memory_is_visible(void **state)
     request.width = request.height = 1, request.rgb = seen;
     fine(cuvette_engine_render(engine, clone, &request, NULL, &why), &why);
     for (int k = 0; k < 3; k++)
-        assert_true(fabsf(seen[k] - texel[k]) < 1e-6F);
+        assert_true(fabsf(seen[k] - one_pixel[k]) < 1e-6F);
     cuvette_scene_destroy(clone);
     cuvette_engine_destroy(engine);
 }

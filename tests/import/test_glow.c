@@ -33,10 +33,10 @@ static void put_image(const char *name, int only)
 }
 
 /* The light of a texel, times a colour. */
-static vec3 sent(int texel, double r, double g, double b)
+static vec3 sent(int at, double r, double g, double b)
 {
-    return vec3_make(r * srgb_decode(texels[texel][0] / 5.0), g * srgb_decode(texels[texel][1] / 5.0),
-                     b * srgb_decode(texels[texel][2] / 5.0));
+    return vec3_make(r * srgb_decode(texels[at][0] / 5.0), g * srgb_decode(texels[at][1] / 5.0),
+                     b * srgb_decode(texels[at][2] / 5.0));
 }
 
 /* A square of side 2 in the plane z = 0, with the image upright for a viewer in front, as glTF; the material and what

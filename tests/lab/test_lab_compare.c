@@ -51,13 +51,13 @@ static double number(const json_t *of, const char *key)
 static image *image_of(const char *assignments)
 {
     scene *s = scene_from(BALL_SCENE);
-    image *shared_image = NULL;
+    image *held_image = NULL;
     set_all(s, assignments);
     render_result *result = render(s);
-    assert_int_equal(film_image(result->img, &shared_image, NULL), STATUS_OK);
+    assert_int_equal(film_image(result->img, &held_image, NULL), STATUS_OK);
     render_result_destroy(result);
     scene_destroy(s);
-    return shared_image;
+    return held_image;
 }
 
 static void refused(const lab_room *room, const char *method, const char *target, int code, const char *words)
@@ -76,12 +76,12 @@ static image *decoded(const lab_room *room, const char *target)
     FILE *out = fopen(path, "wb");
     assert_int_equal(fwrite(bytes, 1, size, out), size);
     assert_int_equal(fclose(out), 0);
-    image *shared_image = NULL;
+    image *held_image = NULL;
     diagnostic why = {.line = 0};
-    worked(image_read(path, &shared_image, NULL, &why), &why);
+    worked(image_read(path, &held_image, NULL, &why), &why);
     free(path);
     free(bytes);
-    return shared_image;
+    return held_image;
 }
 
 static void comparing_requires_a_reference_image(void **state)

@@ -418,12 +418,12 @@ static void write_kept(const place *p, const char *name, const char *text)
     free(path);
 }
 
-static void write_old(const place *p, int day, const char *folder, const char *rest)
+static void write_old(const place *p, int day, const char *within, const char *rest)
 {
     char name[64];
     char *text = text_format("# An unsaved scene of cuvette lab: {\"time\": \"2026-01-%02dT00:00:00Z\", \"title\": "
                              "\"%d\", \"folder\": \"%s\", \"file\": \"scene.yaml\"}\n%s",
-                             day, day, folder, rest);
+                             day, day, within, rest);
     snprintf(name, sizeof name, "unsaved-00000000000000%02d.yaml", day);
     write_kept(p, name, text);
     free(text);

@@ -367,12 +367,12 @@ static void write_other_run(const lab_room *room)
     assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
     FILE *out = fopen(other, "w");
     fwrite(table->raw, 1, table->start[0], out);
-    const int wall = csv_column(table, "wall_s"), film = csv_column(table, "film_hash"),
+    const int wall = csv_column(table, "wall_s"), hash = csv_column(table, "film_hash"),
               expected = csv_column(table, "film_expected");
     for (size_t i = 0; i < table->row_count; i++)
         for (int k = 0; k < (int)table->column_count; k++) {
             const bool other_film =
-                strcmp(csv_field(table, i, csv_column(table, "cell")), "2") == 0 && (k == film || k == expected);
+                strcmp(csv_field(table, i, csv_column(table, "cell")), "2") == 0 && (k == hash || k == expected);
             if (k == wall)
                 fprintf(out, "%.17g", 2 * csv_field_real(table, i, k));
             else

@@ -93,10 +93,10 @@ static void an_image_wraps_around_and_ends_at_the_poles(void **state)
     (void)state;
     image *img = numbered();
     const background sky = {.kind = BACKGROUND_IMAGE, .img = img, .brightness = 1.0};
-    const double texel = 360.0 / WIDTH;
+    const double step = 360.0 / WIDTH;
     for (int k = -4; k <= 4; k++) { /* across the seam from column 7 to column 0 */
         const double share = 0.5 + k / 8.0;
-        expect_radiance(sky_radiance(&sky, towards(180.0 + k / 8.0 * texel, 22.5)), 7.0 * (1.0 - share), 1.0, 0.5);
+        expect_radiance(sky_radiance(&sky, towards(180.0 + k / 8.0 * step, 22.5)), 7.0 * (1.0 - share), 1.0, 0.5);
     }
     assert_near(sky_radiance(&sky, vec3_make(0.0, 1.0, 0.0)).y, 0.0, 1e-12);
     assert_near(sky_radiance(&sky, vec3_make(0.0, -1.0, 0.0)).y, HEIGHT - 1.0, 1e-12);
