@@ -7,6 +7,7 @@
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "scene/model/scene.h"
+#include "study/plan/grid.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -23,8 +24,16 @@ typedef struct listed_kind {
 static status print_study(const char *path, diagnostic *why)
 {
     study *s = NULL;
-    TRY(study_read(path, &s, why));
-    printf("%-40s %5zu cells  %s\n", path, study_cell_count(s), s->title ? s->title : "");
+    document *fit = NULL;
+    diagnostic unused;
+    const bool is_fit = study_read_fit(path, &s, &fit, &unused) == STATUS_OK;
+    document_destroy(fit);
+    if (!is_fit)
+        TRY(study_read(path, &s, why));
+    if (is_fit)
+        printf("%-40s         fit  %s\n", path, s->title ? s->title : "");
+    else
+        printf("%-40s %5zu cells  %s\n", path, study_cell_count(s), s->title ? s->title : "");
     study_destroy(s);
     return STATUS_OK;
 }

@@ -97,7 +97,8 @@ static const decision decisions[] = {
 
     {PARAM_BEAM, "lights", BEAM_LIGHT, BEAM_LIGHT},
     {PARAM_BEAM,
-     "kind position target direction normal rays angle_deg width white lambda_nm wavelengths power branches depth "
+     "kind position target direction normal rays pattern field_columns field_rows field_deg field_width angle_deg "
+     "width white lambda_nm wavelengths power branches depth "
      "min_fraction color visible profile",
      UNSEEN, UNSEEN}, /* without `lights` an image shows no beam */
 
@@ -116,7 +117,8 @@ static const decision decisions[] = {
     {PARAM_MATERIAL, "texture_size", SAID, "only meshes have textures"},
     {PARAM_MATERIAL, "checker checker_color", SAID, "there are no chequers: the surface has its first colour"},
 
-    {PARAM_SOLID, "position rotation radius height m capillary_length contact_angle_deg contact_radius", SAID, SAID},
+    {PARAM_SOLID, "follows offset position rotation radius height m capillary_length contact_angle_deg contact_radius",
+     SAID, SAID},
     {PARAM_SOLID, "inner_radius floor sides top_radius tube_radius radius_1 radius_2 thickness diameter", SAID, SAID},
     {PARAM_SOLID,
      "diameter_1 diameter_2 conic_1 conic_2 a4_1 a6_1 a8_1 a10_1 a12_1 a14_1 a16_1 a18_1 a20_1 a4_2 a6_2 a8_2 a10_2 "

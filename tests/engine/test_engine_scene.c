@@ -257,7 +257,7 @@ static void objects_are_added_moved_turned_and_removed(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* In ambient light only, a white wall with a texture of one one_pixel shows that one_pixel's light; so does a clone. */
+/* In ambient light only, a white wall with a texture of one pixel shows that pixel's light; so does a clone. */
 static void a_texture_from_memory_is_visible(void **state)
 {
     (void)state;

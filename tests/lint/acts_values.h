@@ -148,6 +148,8 @@ static inline void acts_values_of(const scene *s, const param *row, const char *
     case PARAM_LIST: acts_lists(now, v); break;
     case PARAM_PATH:
     case PARAM_WORD: acts_names(s, row, now, v); break;
-    case PARAM_LAYERS: acts_words((const char *const[]){"none", "ar-550", "mirror-550", NULL}, now, v); break;
+    case PARAM_LAYERS:
+        acts_words((const char *const[]){"none", "ar-550", "mirror-550", NULL}, *now ? now : "none", v);
+        break;
     }
 }

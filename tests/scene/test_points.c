@@ -81,8 +81,10 @@ static scene *one_by_one(const scene *cloud, const char *keys)
     assert_int_equal(text_writer_close(&w, &text, NULL, NULL), STATUS_OK);
     scene *s = read_loaded(text);
     free(text);
-    for (size_t i = 0; i < solid_shape_count(&shape); i++)
+    for (size_t i = 0; i < solid_shape_count(&shape); i++) { /* the scale is that of the points */
         s->solids[i + 1].shape.position = solid_shape_copy(&shape, i).position;
+        s->solids[i + 1].shape.scale = vec3_make(1.0, 1.0, 1.0);
+    }
     return s;
 }
 

@@ -1,5 +1,5 @@
-/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_prescription.h). Private to
- * this folder. */
+/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_prescription.h). Private
+ * to this folder. */
 #pragma once
 
 #include "scene/file/document.h"

@@ -92,11 +92,6 @@ static void put_at(lens_builder *b, const char *name, double y)
     lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", r.x, r.y, r.z);
 }
 
-static bool has_row(const char *row)
-{
-    return param_find(PARAM_SOLID, row) != NULL;
-}
-
 static void named(const lens_builder *b, object_name name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static void named(const lens_builder *b, object_name name, const char *format, ...)
@@ -194,7 +189,7 @@ static const char *black(lens_builder *b)
 static double side_height(const lens_builder *b, size_t surface, double rho)
 {
     const lens_surface *s = &b->p->surface[surface];
-    const double limit = has_row("diameter_1") && s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho;
+    const double limit = s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho;
     return b->y[surface] + lens_surface_sag(s, limit);
 }
 
@@ -223,9 +218,6 @@ static void put_side(lens_builder *b, const char *name, int side, const lens_sur
         if (of->even[i] == 0.0)
             continue;
         snprintf(row, sizeof row, "a%d_%d", 4 + 2 * i, side);
-        if (b->t.code == STATUS_OK && !has_row(row))
-            b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "leave it out if it is negligible",
-                                 "%s: a coefficient of r^%d is not supported", name, 4 + 2 * i);
         lens_put_number(&b->t, name, row, of->even[i] / power);
     }
 }
@@ -248,22 +240,21 @@ static void put_element(lens_builder *b, const element *e)
     put_at(b, e->name, e->y_1 - e->before);
     lens_put_number(&b->t, e->name, "thickness", (e->length + e->before + e->after) * scale);
     lens_put_number(&b->t, e->name, "diameter", e->diameter * scale);
+    for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim */
+        const double own = b->p->surface[k == 0 ? e->front : e->back].diameter;
+        lens_put_number(&b->t, e->name, k == 0 ? "diameter_1" : "diameter_2",
+                        own > 0.0 && own < e->diameter ? own * scale : 0.0);
+    }
 }
 
-/* Chooses the diameter of the rim. Without own diameters of the sides it is the larger one, or, where a surface does
- * not reach that far, the smaller one. */
+/* The rim has the larger diameter of both sides, or the smaller one where the sides would cross. */
 static void choose_rim(lens_builder *b, element *e)
 {
     const double d_1 = b->p->surface[e->front].diameter, d_2 = b->p->surface[e->back].diameter;
     e->diameter = fmax(d_1, d_2);
     put_element(b, e);
-    if (b->t.code != STATUS_OK)
-        return;
-    if (has_row("diameter_1") && d_1 > 0.0 && d_2 > 0.0 && d_1 != d_2) {
-        lens_put_number(&b->t, e->name, "diameter_1", d_1 * b->at->scale);
-        lens_put_number(&b->t, e->name, "diameter_2", d_2 * b->at->scale);
-    } else if (d_1 != d_2 && fmin(d_1, d_2) > 0.0 &&
-               check_object(b->t.s, PARAM_SOLID, (size_t)scene_find_solid(b->t.s, e->name), NULL) != STATUS_OK) {
+    if (b->t.code == STATUS_OK && d_1 != d_2 && fmin(d_1, d_2) > 0.0 &&
+        check_object(b->t.s, PARAM_SOLID, (size_t)scene_find_solid(b->t.s, e->name), NULL) != STATUS_OK) {
         e->diameter = fmin(d_1, d_2);
         put_element(b, e);
     }
@@ -292,8 +283,7 @@ static void add_element(lens_builder *b, size_t i)
     lens_put(&b->t, e->name, "material", "%s", glass);
     put_side(b, e->name, 1, &p->surface[e->front]);
     put_side(b, e->name, 2, &p->surface[e->back]);
-    if (has_row("material_rim"))
-        lens_put(&b->t, e->name, "material_rim", "%s", black(b));
+    lens_put(&b->t, e->name, "material_rim", "%s", black(b));
     choose_rim(b, e);
 }
 

@@ -1,5 +1,6 @@
-/* Reads sequential lens files of Zemax (lens_prescription.h). The format, line by line, is a keyword and its values; lines of
- * a surface follow its line SURF. Surface 0 is the object, the last one the image. Zemax, OpticStudio User Guide. */
+/* Reads sequential lens files of Zemax (lens_prescription.h). The format, line by line, is a keyword and its values;
+ * lines of a surface follow its line SURF. Surface 0 is the object, the last one the image. Zemax, OpticStudio User
+ * Guide. */
 #include "base/number.h"
 #include "scene/lens/lens_reader.h"
 

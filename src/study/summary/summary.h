@@ -1,5 +1,5 @@
-/* A study's rows as tables. Warm-ups, marked rows and those that a person excluded (study/rows/row_files.h) are left out
- * of every value except their counts; rows that cannot be trusted (study/rows/row_files.h) are left out everywhere.
+/* A study's rows as tables. Warm-ups, marked rows and those that a person excluded (study/rows/row_files.h) are left
+ * out of every value except their counts; rows that cannot be trusted (study/rows/row_files.h) are left out everywhere.
  * Rows of unlike environments are never in one line. verdict, which may be NULL, becomes the first of the rows' faults,
  * or stays as it is; the caller checks the stream `out` for write errors (ferror). A study without any row is
  * STATUS_FAILURE, and nothing is written. */

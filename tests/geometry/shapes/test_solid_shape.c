@@ -159,7 +159,7 @@ static void invalid_solids_are_refused(void **state)
     s.floor = 3;
     expect_wrong(s, "floor");
     s = make(SHAPE_CUP);
-    s.floor = 0;
+    s.floor = -0.1; /* 0 is a tube */
     expect_wrong(s, "floor");
     s = make(SHAPE_SPHERE);
     s.radius = (double)NAN;

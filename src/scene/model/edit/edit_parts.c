@@ -177,8 +177,6 @@ static status turn_parts(parts_edit *e)
 static int length_power(const param *row)
 {
     static const char inverse[] = "1/scene units^";
-    if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0)
-        return 1;
     if (row->type != PARAM_REAL && row->type != PARAM_VECTOR)
         return 0;
     if (strncmp(row->unit, inverse, sizeof inverse - 1) == 0)
@@ -202,8 +200,18 @@ static bool is_power(const parts_edit *e, const char *name, const param *row)
            param_place_find_object(e->s, name, &at, NULL) == STATUS_OK && e->s->beams[at.index].lights;
 }
 
+/* Whether the row is the scale of a mesh or of points, which are lengths; that of another solid multiplies its own. */
+static bool is_length_scale(const parts_edit *e, const char *name, const param *row)
+{
+    const int index = strcmp(row->name, "scale") == 0 ? scene_find_solid(e->s, name) : -1;
+    return row->group == PARAM_SOLID && index >= 0 &&
+           (shape_of(&e->s->solids[index].shape)->triangles || e->s->solids[index].points[0]);
+}
+
 static int scaling_power(const parts_edit *e, const char *name, const param *row)
 {
+    if (is_length_scale(e, name, row))
+        return 1;
     return is_power(e, name, row) ? 2 : length_power(row);
 }
 
