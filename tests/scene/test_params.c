@@ -70,6 +70,7 @@ static void rows_are_complete_and_defaults_are_in_range(void **state)
     scene *s = make();
     for (size_t i = 0; i < param_count(); i++) {
         const param *row = param_at(i);
+        assert_true(i == 0 || param_at(i - 1)->group <= row->group); /* param_find relies on it */
         char text[200];
         assert_true(row->name[0] && row->meaning[0] && row->unit && row->fallback);
         assert_true(row->meaning[strlen(row->meaning) - 1] != '.');

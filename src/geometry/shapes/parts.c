@@ -58,13 +58,13 @@ bool rule_scales(const shape_rule *rule, const solid_shape *s)
 {
     const vec3 k = s->scale;
     const bool unset = k.x == 0.0 && k.y == 0.0 && k.z == 0.0;
-    return !unset && (k.x != 1.0 || k.y != 1.0 || k.z != 1.0) && !s->points && !rule->triangles && !rule->unbounded;
+    return shape_has_scale(s) && !unset && !s->points && !rule->triangles && !rule->unbounded;
 }
 
 shape_extent rule_extent(const shape_rule *rule, const solid_shape *s)
 {
     shape_extent e = rule->extent(s);
-    if (!rule_scales(rule, s))
+    if (!shape_has_scale(s) || !rule_scales(rule, s))
         return e;
     const vec3 a = multiplied(e.box.low, s->scale), b = multiplied(e.box.high, s->scale), k = sizes(s->scale);
     e.box.low = vec3_make(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
@@ -76,7 +76,7 @@ shape_extent rule_extent(const shape_rule *rule, const solid_shape *s)
 /* d . (K p) = (K d) . p for the diagonal matrix K of the scale. */
 double rule_farthest(const shape_rule *rule, const solid_shape *s, vec3 d)
 {
-    if (!rule_scales(rule, s))
+    if (!shape_has_scale(s) || !rule_scales(rule, s))
         return rule->farthest(s, d);
     const vec3 along = multiplied(d, s->scale);
     const double length = vec3_length(along);

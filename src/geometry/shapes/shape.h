@@ -111,6 +111,11 @@ const char *shape_face_name(const shape_rule *rule, int64_t face);
 
 /* --- the functions above for a shape with its scale, which multiplies the local frame's coordinates --- */
 
+/* Whether its scale differs from 1: a quick test before the next one. */
+static inline bool shape_has_scale(const solid_shape *shape)
+{
+    return shape->scale.x != 1.0 || shape->scale.y != 1.0 || shape->scale.z != 1.0;
+}
 /* Whether it is scaled or mirrored; a mesh has its own scale, and that of a solid at points is theirs. */
 bool shape_is_scaled(const solid_shape *shape);
 /* Whether no rotation changes it. */

@@ -31,7 +31,7 @@ static double reach_of(const solid_shape *shape)
     const shape_rule *rule = shape_of(shape);
     if (!rule->extent || (rule->triangles && !shape->mesh))
         return (double)INFINITY;
-    const shape_extent e = shape_extent_of(shape);
+    const shape_extent e = shape_has_scale(shape) ? shape_extent_of(shape) : rule->extent(shape);
     return 0.5 * vec3_length(vec3_add(e.box.low, e.box.high)) + e.ball;
 }
 
@@ -52,10 +52,10 @@ const solid *scene_cover(const scene *s, const solid *hidden)
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];
         const shape_rule *rule = shape_of(&cover->shape);
-        if (rule->covers && !cover->points[0] && !shape_is_scaled(&cover->shape) &&
-            scene_has_precedence(cover, hidden) && !balls_are_apart(&cover->shape, &h.shape, reach)) {
+        if (rule->covers && !cover->points[0] && scene_has_precedence(cover, hidden) &&
+            !balls_are_apart(&cover->shape, &h.shape, reach)) {
             const placed_shape c = place_shape(s, cover);
-            if (rule->covers(&c, &h))
+            if (!shape_is_scaled(&c.shape) && rule->covers(&c, &h))
                 return cover;
         }
     }

@@ -722,10 +722,24 @@ const char *param_group_name(param_group group)
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 
+/* The first row of a group: the rows are in the order of their groups. */
+static size_t first_row(param_group group)
+{
+    size_t low = 0, high = TABLE_COUNT;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (table[middle].group < group)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 static const param *find_row(param_group group, const char *name)
 {
-    for (size_t i = 0; i < TABLE_COUNT; i++)
-        if (table[i].group == group && table[i].name[0] == name[0] && strcmp(table[i].name, name) == 0)
+    for (size_t i = first_row(group); i < TABLE_COUNT && table[i].group == group; i++)
+        if (table[i].name[0] == name[0] && strcmp(table[i].name, name) == 0)
             return &table[i];
     return NULL;
 }
