@@ -92,7 +92,7 @@ $(foreach i,$(wasm_isas),$(foreach f,$(wasm_folders),$(eval $(call wasm_folder_r
 # Everything that cuvette.h declares, but for studies, and what the scripts of src/wasm call.
 $(wasm)/exports: src/cuvette.h src/wasm/exports.h mk/wasm.mk
 	@mkdir -p $(@D)
-	@{ grep -oh '\bcuvette_[a-z0-9_]*(' src/cuvette.h | grep -v '_study_\|each_column\|text_destroy'; \
+	@{ grep -oh '\bcuvette_[a-z0-9_]*(' src/cuvette.h | grep -v '_study_\|each_column\|each_lens_number\|text_destroy'; \
 	  grep -oh '\bwasm_[a-z0-9_]*(' src/wasm/exports.h; echo 'malloc('; echo 'free('; } | sort -u | \
 	  sed 's/^/_/; s/($$//' >$@
 
