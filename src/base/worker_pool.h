@@ -1,7 +1,7 @@
 /* The worker pool: the threads of all parallel work. A persistent pool starts its threads once and wakes them for each
  * run in a tree (worker i wakes 2i+1 and 2i+2), so that a thousand of them do not queue up behind one waker. Otherwise
  * threads are created and joined for each run, as in the published rod report. Workers follow the caller's cancellation
- * (base/cancel.h). base/worker_pool.h is a loop on such a pool. Ownership: worker_pool_create allocates,
+ * (base/cancel.h). A thread team (below) is a loop on such a pool. Ownership: worker_pool_create allocates,
  * worker_pool_destroy joins and releases. One run at a time. In a child of fork, a pool that was not running starts new
  * threads.
  *
@@ -44,7 +44,7 @@ void worker_pool_end(worker_pool *p);
  * after another, and calls watch here when it is due. */
 void worker_pool_pause(worker_pool *p);
 
-/* A parallel loop on the threads of a worker pool (base/worker_pool.h) and on the calling thread. A team of one starts
+/* A parallel loop on the threads of a worker pool, and on the calling thread. A team of one starts
  * no thread. If the system provides fewer threads than requested, the team is smaller; results must not depend on its
  * size. thread_team_create allocates, thread_team_destroy frees; for one caller at a time. Members work under the
  * cancellation of their caller (base/cancel.h). */

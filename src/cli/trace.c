@@ -59,7 +59,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_flag, trace_request, beams)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
-    {"min-weight", 0, "W", "do not trace rays of less weight, and count them; sets render.min_weight",
+    {"min-weight", 0, "W", "do not trace rays with a weight below W, but count them; sets render.min_weight",
      .store = option_change, .parameter = "render.min_weight"},
     OPTION_SET("'liquid.ior=1.4'"),
     OPTION_MEMORY,

@@ -67,8 +67,8 @@ typedef struct primitive {
     double extent;      /* farthest finite coordinate from the world's origin, for error bounds */
 } primitive;
 
-/* A primitive in a frame that is scaled along its axes (primitives/scaled_kernel.c): at the origin, with a rotation by
- * 0 that counts as one, so that its functions use nothing that upright primitives share. */
+/* A primitive in a frame that is scaled along its axes (primitives/scaled_kernel.c): at the origin, marked as turned by
+ * the identity, as upright primitives read terms of the batch (ray_scratch) that do not apply in that frame. */
 typedef struct scaled_primitive {
     vec3 scale, inverse; /* not 0; 1 / scale */
     primitive inner;

@@ -73,7 +73,8 @@ static const lens_section sections[] = {
                 "Marechal, exp(-(2 pi rms)^2), and by the peak of the point image"},
     {.name = "encircled",
      .x = "mm",
-     .meaning = "part of the light within circles about the point image's centroid, with diffraction",
+     .meaning = "encircled energy: fraction of the light within a circle about the centroid of the point image, with "
+                "diffraction",
      .every = 5},
     {.name = "psf",
      .x = "mm",
@@ -297,7 +298,7 @@ status lens_report_make(const lens_prescription *p, const lens_place *at, isa le
     *out = (lens_report){0};
     TRY(check_options(options, why));
     if (p->wavelength_count == 0 || p->field_count == 0 || p->primary >= p->wavelength_count)
-        return diagnose(why, STATUS_BAD_INPUT, "state at least one of each",
+        return diagnose(why, STATUS_BAD_INPUT, "give at least one field and one wavelength",
                         "the lens has no wavelength, no primary one, or no field");
     lens_model *models = calloc(p->wavelength_count, sizeof *models);
     lens_study s = {

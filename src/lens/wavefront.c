@@ -196,7 +196,7 @@ static void put(lens_report *out, lens_row key, const char *quantity, const char
     lens_row_put(out, key);
 }
 
-/* The part of the light within circles about the centroid of the point image; a circle's edge divides the cells of the
+/* Encircled energy, within circles about the centroid of the point image; a circle's edge divides the cells of the
  * grid that it crosses. lost: what the parts of cells at the pupil's edge lack of their light, as amplitudes. */
 static void put_encircled(lens_study *s, lens_row key, const float *intensity, int wide, double spacing, double lost)
 {

@@ -209,7 +209,8 @@ static asphere_part part_within(const primitive *p, int k, local_ray r, interval
                                  : part_of_conic(p, k, r, bounds, mask_same(at, 1 + k));
 }
 
-/* The same with the ring around it: within the clear cylinder the side counts, and outside it the ring's plane. */
+/* The part of a line on the inner side of side k with its ring: of the side within its clear cylinder, and of the
+ * ring's plane outside it. */
 static asphere_part part_of_side(const primitive *p, int k, local_ray r, interval rim, int64_t at)
 {
     const double clear = lens_clear(p, k);

@@ -115,7 +115,7 @@ status mesh_textures_find(const char *path, mesh_import *imported, diagnostic *w
  * and lines dropped. Coordinates are the file's numbers, as doubles, unless a node or joints transform them. Normals
  * are the file's or none; facet normals of STL are ignored. Material libraries and images that do not exist are a
  * note of the import; buffers must exist. The alpha of vertices, animation and the metalness of glTF are ignored.
- * Ownership: the import is the caller's (scene/assets/mesh_stream.h). Errors: STATUS_BAD_INPUT with the
+ * Ownership: the import is the caller's (see above). Errors: STATUS_BAD_INPUT with the
  * file and the reason; STATUS_FAILURE if the importer cannot be started, or memory runs out. */
 
 /* Reads a mesh file; limits may be NULL. Images of textures are not opened: their paths are absolute, or relative to

@@ -1,5 +1,6 @@
 /* Media, surfaces and paraxial properties of a lens prescription (lens_prescription.h). */
 #include "scene/lens/lens_prescription.h"
+#include "geometry/primitives/asphere.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,11 +45,8 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b)
 
 double lens_surface_sag(const lens_surface *s, double rho)
 {
-    const double c = s->radius == 0.0 ? 0.0 : 1.0 / s->radius, r2 = rho * rho;
-    double even = 0.0;
-    for (int i = LENS_EVEN_TERMS; i-- > 0;)
-        even = (even + s->even[i]) * r2;
-    return c * r2 / (1.0 + sqrt(1.0 - (1.0 + s->conic) * (c * c) * r2)) + even * r2;
+    const even_asphere e = asphere_of(s->radius == 0.0 ? 0.0 : 1.0 / s->radius, s->conic, s->even);
+    return e.stretch * (e.curvature * e.curvature) * (rho * rho) > 1.0 ? NAN : asphere_sag(&e, rho * rho);
 }
 
 /* --- paraxial rays ---
@@ -141,17 +139,14 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
     f.field_slope = field_slope(p, f.pupil);
     const bool finite = isfinite(p->object_distance);
     const double half = 0.5 * f.pupil_diameter, slope = finite ? half / (p->object_distance + f.pupil) : 0.0;
-    const paraxial_ray axial =
-        follow(&s, p->count, (paraxial_ray){finite ? p->object_distance * slope : half, slope}, f.marginal);
-    const paraxial_ray chief = follow(&s, p->count, (paraxial_ray){-f.pupil * f.field_slope, f.field_slope}, f.chief);
+    follow(&s, p->count, (paraxial_ray){finite ? p->object_distance * slope : half, slope}, f.marginal);
+    follow(&s, p->count, (paraxial_ray){-f.pupil * f.field_slope, f.field_slope}, f.chief);
     const paraxial_ray from_object =
         follow(&s, p->count, finite ? (paraxial_ray){p->object_distance, 1.0} : (paraxial_ray){1.0, 0.0}, NULL);
-    (void)axial;
     f.image = -from_object.y / from_object.u;
     f.magnification = finite ? s.index[0] / (s.index[p->count] * from_object.u) : 0.0;
     const paraxial_ray through_pupil = follow(&s, p->count, (paraxial_ray){-f.pupil, 1.0}, NULL);
     f.exit_pupil = -through_pupil.y / through_pupil.u;
-    (void)chief;
     return f;
 }
 

@@ -122,7 +122,7 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
 
-/* The defaults of all rows as values (scene/model/params.h). */
+/* The defaults of all rows as values (param_value). */
 typedef struct param_defaults param_defaults;
 /* Likewise, without the parameters that have these defaults. but: NULL for none. */
 status scene_each_param_but(const scene *s, const param_defaults *but, param_visit *visit, void *context);

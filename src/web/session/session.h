@@ -25,7 +25,7 @@ typedef struct lab_settings {
     /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
      * camera. */
     const char *scene;
-    /* Folder that keeps the unsaved scene while it is unsaved (web/session/session.h), created when it is needed (with
+    /* Folder that keeps the unsaved scene while it is unsaved (struct rescue), created when it is needed (with
      * confine at the start, and removed at the stop if it is empty); "": there is no such folder, which pages report;
      * NULL: nothing is kept or offered. */
     const char *rescue;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "asphere_fixture.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
 #include "ray_fixture.h"
 #include "room_fixture.h"
@@ -218,6 +219,32 @@ static void reflected_rays_stay_within(void **state)
     assert_int_equal(bounces, 12000);
 }
 
+/* The flat faces of a mirrored block are at half its edges, outwards of it; its textures are those of the cube. */
+static void faces_and_textures_are_scaled(void **state)
+{
+    (void)state;
+    const solid_shape cube = {.kind = SHAPE_BOX, .size = {1.0, 1.0, 1.0}};
+    solid_shape block = cube;
+    block.scale = vec3_make(2.0, -4.0, -6.0);
+    scene_geometry *a = scene_geometry_of(&cube, 1), *b = scene_geometry_of(&block, 1);
+    flat_face flat[FLATS_MAX];
+    assert_int_equal(primitive_flats(&b->primitives[0], flat), 6);
+    for (int i = 0; i < 6; i++) {
+        assert_true(fabs(flat[i].at) == 1.0 + flat[i].axis);
+        assert_true(flat[i].outwards == (flat[i].at < 0.0 ? -1.0 : 1.0));
+    }
+    uint64_t seed = 6;
+    for (int face = 0; face < 6; face++) {
+        const vec3 q = random_point(&seed, 0.5), k = block.scale;
+        const surface_mapping one = primitive_mapping(&a->primitives[0], face, q, 0.25),
+                              two = primitive_mapping(&b->primitives[0], face,
+                                                      vec3_make(k.x * q.x, k.y * q.y, k.z * q.z), 0.25);
+        assert_true(fabs(one.u - two.u) + fabs(one.v - two.v) < 1e-12 && two.per_length == one.per_length / 2.0);
+    }
+    scene_geometry_destroy(a);
+    scene_geometry_destroy(b);
+}
+
 /* A solid at points is not scaled by the scale of its points. */
 static void the_scale_of_points_is_theirs(void **state)
 {
@@ -248,6 +275,7 @@ int main(void)
         cmocka_unit_test(an_ellipsoid_has_the_roots_of_its_quadratic),
         cmocka_unit_test(hits_of_any_shape_are_on_its_surface),
         cmocka_unit_test(reflected_rays_stay_within),
+        cmocka_unit_test(faces_and_textures_are_scaled),
         cmocka_unit_test(the_scale_of_points_is_theirs),
         cmocka_unit_test(a_scale_of_0_is_refused),
     };

@@ -35,7 +35,7 @@ bool placement_in_view(const scene *s, vec3 point);
 /* Rounds a value to the digits that an object of this size needs. */
 double placement_round(double value, double size);
 
-/* Adds objects with one command: each is placed where the camera looks (scene/model/place/placement.h), has a suitable
+/* Adds objects with one command: each is placed where the camera looks (see above), has a suitable
  * size, and is visible. Use a copy of the scene, and discard it after an error. wanted: the requested name; NULL: a new
  * one; name returns it in both cases. Errors: STATUS_BAD_INPUT as in scene/model/edit/edit.h. */
 
