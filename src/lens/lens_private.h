@@ -3,17 +3,18 @@
 #pragma once
 
 #include "base/array.h"
+#include "geometry/primitives/asphere.h"
 #include "lens/lens.h"
 #include "render/inspect/probe.h"
 
 /* --- paraxial.c --- */
 
-/* A surface at one wavelength. Indices are below 0 where the light travels back, as in textbooks on mirrors (Welford,
- * Aberrations of Optical Systems, 1986, 4.5). */
+/* A surface at one wavelength; indices as lens_index_after has them. */
 typedef struct lens_step {
-    double c, k, even[LENS_EVEN_TERMS], z; /* curvature, conic constant, coefficients from r^4 on, vertex; mm */
-    double n, n_after, clear;              /* clear radius; INFINITY: none */
-    bool mirror, silent;                   /* silent: it neither bends nor reflects */
+    double c, k, z;           /* curvature, conic constant, vertex; mm */
+    even_asphere shape;       /* the same with all coefficients */
+    double n, n_after, clear; /* clear radius; INFINITY: none */
+    bool mirror, silent;      /* silent: it neither bends nor reflects */
 } lens_step;
 
 typedef struct lens_model {
@@ -29,12 +30,6 @@ double lens_sag(const lens_step *s, double rho, double *slope, double *bend);
 
 status lens_model_make(const lens_prescription *p, double lambda_nm, lens_model *out, diagnostic *why);
 
-/* Heights and slopes of a paraxial ray at each surface; u[i] before surface i, u[count] after the last. */
-typedef struct lens_trail {
-    double y[LENS_SURFACES_MAX], u[LENS_SURFACES_MAX + 1];
-} lens_trail;
-void lens_trail_make(const lens_model *m, double y, double u, lens_trail *out);
-
 /* Gaussian constants; positions from the first vertex (z_...), mm. */
 typedef struct lens_first {
     double power, bfl, ffl, z_front, z_rear, z_principal, z_principal_rear, z_nodal, z_nodal_rear;
@@ -45,9 +40,6 @@ typedef struct lens_first {
 } lens_first;
 
 status lens_first_make(const lens_prescription *p, const lens_model *m, lens_first *out, diagnostic *why);
-
-/* The largest distance of a field from the axis, in the prescription's own unit. */
-double lens_field_most(const lens_prescription *p);
 
 /* --- rays.c --- */
 

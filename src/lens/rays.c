@@ -68,10 +68,7 @@ static double meet(const lens_step *s, vec3 o, vec3 d)
     const double B = d.z - s->c * (o.x * d.x + o.y * d.y + k * z * d.z);
     const double C = s->c * (o.x * o.x + o.y * o.y + k * z * z) - 2.0 * z;
     double t = C / (B + copysign(sqrt(B * B - A * C), d.z));
-    bool aspheric = false;
-    for (int i = 0; i < LENS_EVEN_TERMS; i++)
-        aspheric |= s->even[i] != 0.0;
-    for (int i = 0; i < 50 && aspheric; i++) {
+    for (int i = 0; i < 50 && asphere_has_terms(&s->shape); i++) {
         const vec3 p = vec3_add(o, vec3_scale(d, t));
         const double rho = hypot(p.x, p.y);
         double slope, bend;
@@ -152,7 +149,7 @@ static bool reach_image(walk *w)
 {
     const lens_model *m = w->b->m;
     const ray_node *now = &w->b->tree.node[w->node];
-    const lens_step screen = {.c = m->image_c, .z = m->z_image};
+    const lens_step screen = {.c = m->image_c, .z = m->z_image, .shape = asphere_of(m->image_c, 0.0, NULL)};
     const vec3 o = node_origin(w), d = turned_back(w->b->at, now->direction);
     const double t = meet(&screen, o, d);
     w->out->along[m->count] = w->out->direction = d;

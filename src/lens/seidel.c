@@ -17,7 +17,7 @@ static void sums_of(const lens_model *m, const lens_first *first, const double s
     const double A = s->n * (u + y * s->c), Ab = s->n * (ub + yb * s->c), H = first->invariant;
     const double bend = u2 / s->n_after - u / s->n, P = s->c * (1.0 / s->n_after - 1.0 / s->n);
     const double squares = 1.0 / (s->n_after * s->n_after) - 1.0 / (s->n * s->n);
-    const double figure = (s->k * s->c * s->c * s->c + 8.0 * s->even[0]) * (s->n_after - s->n);
+    const double figure = (s->k * s->c * s->c * s->c + 8.0 * s->shape.even[0]) * (s->n_after - s->n);
     const double colour = spread[1] / s->n_after - spread[0] / s->n;
     out[0] = -A * A * y * bend + figure * y * y * y * y;
     out[1] = -A * Ab * y * bend + figure * y * y * y * yb;

@@ -62,6 +62,22 @@ static inline double asphere_slope(const even_asphere *e, double q)
     return 0.5 * e->curvature / asphere_root(e, q) + q * sum;
 }
 
+/* d2z/dq2 */
+static inline double asphere_slope_rate(const even_asphere *e, double q)
+{
+    const double c = e->curvature, w = asphere_root(e, q);
+    double sum = 0.0;
+    for (int i = e->terms - 1; i >= 0; i--)
+        sum = (i + 2.0) * (i + 1.0) * e->even[i] + q * sum;
+    return 0.25 * e->stretch * (c * c * c) / (w * w * w) + sum;
+}
+
+/* Whether the conic part has a point there. */
+static inline bool asphere_reaches(const even_asphere *e, double q)
+{
+    return e->stretch * (e->curvature * e->curvature) * q <= 1.0;
+}
+
 /* (z(q) - z(p)) / (q - p), without cancellation: c / (w(p) + w(q)) for the conic, the sum of p^i q^(n - 1 - i) for
  * q^n. */
 static inline double asphere_quotient(const even_asphere *e, double p, double q)

@@ -46,107 +46,130 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b)
 double lens_surface_sag(const lens_surface *s, double rho)
 {
     const even_asphere e = asphere_of(s->radius == 0.0 ? 0.0 : 1.0 / s->radius, s->conic, s->even);
-    return e.stretch * (e.curvature * e.curvature) * (rho * rho) > 1.0 ? NAN : asphere_sag(&e, rho * rho);
+    return asphere_reaches(&e, rho * rho) ? asphere_sag(&e, rho * rho) : NAN;
+}
+
+double lens_index_after(const lens_surface *s, double before, double lambda_nm)
+{
+    return s->mirror ? -before : copysign(lens_medium_index(&s->medium, lambda_nm), before);
+}
+
+double lens_field_most(const lens_prescription *p)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < p->field_count; i++)
+        most = fmax(most, hypot(p->field[i].x, p->field[i].y));
+    return most;
 }
 
 /* --- paraxial rays ---
  *
  * A ray has the height y and the slope u = dy/dz before each surface. Refraction: n' u' = n u - y (n' - n) c; after a
- * mirror n' = -n. Transfer: y += t u'. Kingslake and Johnson, 3.1. */
-
-typedef struct paraxial_ray {
-    double y, u;
-} paraxial_ray;
+ * mirror n' = -n. Transfer: y += t u'. Kingslake and Johnson, Lens Design Fundamentals. */
 
 typedef struct paraxial_system {
     const lens_prescription *p;
-    double index[LENS_SURFACES_MAX + 1]; /* before each surface, and in the image space; below 0 after a mirror */
+    double index[LENS_SURFACES_MAX + 1]; /* before each surface, and in the image space */
 } paraxial_system;
 
 static paraxial_system system_of(const lens_prescription *p, double lambda_nm)
 {
     paraxial_system s = {.p = p, .index = {lens_medium_index(&p->object_medium, lambda_nm)}};
-    for (size_t i = 0; i < p->count; i++) {
-        const double sign = s.index[i] < 0.0 ? -1.0 : 1.0;
-        s.index[i + 1] =
-            p->surface[i].mirror ? -s.index[i] : sign * lens_medium_index(&p->surface[i].medium, lambda_nm);
-    }
+    for (size_t i = 0; i < p->count; i++)
+        s.index[i + 1] = lens_index_after(&p->surface[i], s.index[i], lambda_nm);
     return s;
 }
 
-static paraxial_ray refract_at(const paraxial_system *s, size_t i, paraxial_ray r)
+static lens_trail follow(const paraxial_system *s, double y, double u)
 {
-    const double radius = s->p->surface[i].radius, c = radius == 0.0 ? 0.0 : 1.0 / radius;
-    r.u = (s->index[i] * r.u - r.y * (s->index[i + 1] - s->index[i]) * c) / s->index[i + 1];
-    return r;
-}
-
-/* From before the first surface to before surface `to`; with to == count: to after the last surface, at its vertex.
- * height may be NULL. */
-static paraxial_ray follow(const paraxial_system *s, size_t to, paraxial_ray r, double *height)
-{
-    for (size_t i = 0; i < to; i++) {
-        if (height)
-            height[i] = r.y;
-        r = refract_at(s, i, r);
-        r.y += i + 1 < s->p->count ? s->p->surface[i].thickness * r.u : 0.0;
+    lens_trail t;
+    for (size_t i = 0; i < s->p->count; i++) {
+        const lens_surface *of = &s->p->surface[i];
+        const double c = of->radius == 0.0 ? 0.0 : 1.0 / of->radius;
+        t.y[i] = y, t.u[i] = u;
+        u = (s->index[i] * u - y * (s->index[i + 1] - s->index[i]) * c) / s->index[i + 1];
+        y += of->thickness * u;
     }
-    return r;
+    t.u[s->p->count] = u;
+    return t;
 }
 
-/* The diameter of the entrance pupil; zoom: of the stop by that of the pupil. */
-static double pupil_diameter(const lens_prescription *p, const lens_first_order *f, double zoom)
+/* From the last vertex to where a ray crosses the axis. */
+static double crossing(const paraxial_system *s, const lens_trail *t)
 {
-    const size_t stop = p->stop < 0 ? 0 : (size_t)p->stop;
+    return -t->y[s->p->count - 1] / t->u[s->p->count];
+}
+
+static int stop_of(const paraxial_system *s)
+{
+    const lens_prescription *p = s->p;
+    const bool far = isinf(p->object_distance);
+    if (p->stop >= 0 && (size_t)p->stop < p->count)
+        return p->stop;
+    const lens_trail t = follow(s, 1.0, far ? 0.0 : 1.0 / p->object_distance);
+    int best = 0;
+    double least = INFINITY;
+    for (size_t i = 0; i < p->count; i++)
+        if (p->surface[i].diameter > 0.0 && p->surface[i].diameter < least * fabs(t.y[i])) {
+            least = p->surface[i].diameter / fabs(t.y[i]);
+            best = (int)i;
+        }
+    return best;
+}
+
+/* The diameter of the entrance pupil. */
+static double pupil_diameter(const paraxial_system *s, const lens_first_order *f)
+{
+    const lens_prescription *p = s->p;
     switch (p->aperture_kind) {
-    case LENS_APERTURE_STOP: return zoom != 0.0 && p->count > 0 ? p->surface[stop].diameter / fabs(zoom) : 0.0;
+    case LENS_APERTURE_STOP: return f->stop_height != 0.0 ? p->surface[f->stop].diameter / fabs(f->stop_height) : 0.0;
     case LENS_APERTURE_PUPIL: return p->aperture;
     case LENS_APERTURE_NUMBER: return p->aperture > 0.0 && isfinite(f->efl) ? fabs(f->efl) / p->aperture : 0.0;
     case LENS_APERTURE_OBJECT:
-        return isfinite(p->object_distance) && p->aperture < 1.0
-                   ? 2.0 * (p->object_distance + f->pupil) * p->aperture / sqrt(1.0 - p->aperture * p->aperture)
+        return isfinite(p->object_distance) && p->aperture < s->index[0]
+                   ? 2.0 * (p->object_distance + f->pupil) * tan(asin(p->aperture / s->index[0]))
                    : 0.0;
     }
     return 0.0;
 }
 
-static double field_slope(const lens_prescription *p, double pupil)
+/* Rays through the edge of the entrance pupil, and through its middle. */
+static void set_rays(const paraxial_system *s, lens_first_order *f)
 {
-    const double rad = 0.017453292519943295769;
-    double most = 0.0;
-    for (size_t i = 0; i < p->field_count; i++) {
-        const double h = hypot(p->field[i].x, p->field[i].y);
-        most =
-            fmax(most, p->field_kind == LENS_FIELD_ANGLE ? tan(fmin(h, 89.0) * rad) : h / (p->object_distance + pupil));
-    }
-    return most;
+    const lens_prescription *p = s->p;
+    const bool far = isinf(p->object_distance);
+    const double half = 0.5 * f->pupil_diameter, slope = far ? 0.0 : half / (p->object_distance + f->pupil),
+                 most = lens_field_most(p);
+    f->field_slope = p->field_kind == LENS_FIELD_ANGLE ? tan(fmin(most, 89.0) * 0.017453292519943295769)
+                                                       : -most / (p->object_distance + f->pupil);
+    f->marginal = follow(s, far ? half : p->object_distance * slope, slope);
+    f->chief = follow(s, -f->pupil * f->field_slope, f->field_slope);
 }
 
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm)
 {
     const paraxial_system s = system_of(p, lambda_nm);
-    const size_t stop = p->stop < 0 ? 0 : (size_t)p->stop;
-    lens_first_order f = {.direction = s.index[p->count] < 0.0 ? -1.0 : 1.0};
-    const paraxial_ray parallel = follow(&s, p->count, (paraxial_ray){1.0, 0.0}, NULL),
-                       to_stop = follow(&s, stop, (paraxial_ray){1.0, 0.0}, NULL),
-                       from_vertex = follow(&s, stop, (paraxial_ray){0.0, 1.0}, NULL);
-    /* 1 / power */
-    f.efl = -1.0 / (parallel.u * s.index[p->count]);
-    f.back = -parallel.y / parallel.u;
-    f.pupil = from_vertex.y / to_stop.y;
-    f.pupil_diameter = pupil_diameter(p, &f, to_stop.y);
-    f.stop_diameter = f.pupil_diameter * fabs(to_stop.y);
-    f.field_slope = field_slope(p, f.pupil);
-    const bool finite = isfinite(p->object_distance);
-    const double half = 0.5 * f.pupil_diameter, slope = finite ? half / (p->object_distance + f.pupil) : 0.0;
-    follow(&s, p->count, (paraxial_ray){finite ? p->object_distance * slope : half, slope}, f.marginal);
-    follow(&s, p->count, (paraxial_ray){-f.pupil * f.field_slope, f.field_slope}, f.chief);
-    const paraxial_ray from_object =
-        follow(&s, p->count, finite ? (paraxial_ray){p->object_distance, 1.0} : (paraxial_ray){1.0, 0.0}, NULL);
-    f.image = -from_object.y / from_object.u;
-    f.magnification = finite ? s.index[0] / (s.index[p->count] * from_object.u) : 0.0;
-    const paraxial_ray through_pupil = follow(&s, p->count, (paraxial_ray){-f.pupil, 1.0}, NULL);
-    f.exit_pupil = -through_pupil.y / through_pupil.u;
+    const double n = s.index[0], n_image = s.index[p->count];
+    lens_first_order f = {.direction = n_image < 0.0 ? -1.0 : 1.0, .efl = INFINITY};
+    if (p->count == 0)
+        return f;
+    const bool far = isinf(p->object_distance);
+    const lens_trail parallel = follow(&s, 1.0, 0.0), from_vertex = follow(&s, 0.0, 1.0);
+    f.stop = stop_of(&s);
+    f.efl = -1.0 / (parallel.u[p->count] * n_image); /* 1 / power */
+    f.back = crossing(&s, &parallel);
+    f.front = -n_image * from_vertex.u[p->count] * f.efl;
+    f.stop_height = parallel.y[f.stop];
+    f.pupil = from_vertex.y[f.stop] / f.stop_height;
+    f.pupil_diameter = pupil_diameter(&s, &f);
+    f.stop_diameter =
+        p->aperture_kind == LENS_APERTURE_STOP ? p->surface[f.stop].diameter : f.pupil_diameter * fabs(f.stop_height);
+    set_rays(&s, &f);
+    const lens_trail axial = far ? parallel : follow(&s, p->object_distance, 1.0), middle = follow(&s, -f.pupil, 1.0);
+    f.image = crossing(&s, &axial);
+    f.magnification = far ? 0.0 : n / (n_image * axial.u[p->count]);
+    f.exit_pupil = crossing(&s, &middle);
+    f.exit_diameter = f.pupil_diameter * fabs(n / (n_image * middle.u[p->count]));
     return f;
 }
 
@@ -163,7 +186,7 @@ void lens_prescription_complete(lens_prescription *p)
         /* of wide fields, paraxial rays are farther out than the surface reaches */
         const double reach =
             s->radius == 0.0 || s->conic <= -1.0 ? INFINITY : 1.9 * fabs(s->radius) / sqrt(1.0 + s->conic);
-        const double needed = fmin(2.0 * (fabs(f.marginal[i]) + fabs(f.chief[i])), reach);
+        const double needed = fmin(2.0 * (fabs(f.marginal.y[i]) + fabs(f.chief.y[i])), reach);
         if (!(s->diameter > 0.0) && isfinite(needed))
             s->diameter = (int)i == p->stop ? f.stop_diameter : ROOM_FOR_REAL_RAYS * needed;
     }

@@ -105,24 +105,40 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b);
 /* The sag of a surface at a radius; NaN beyond the end of its conic. Pure. */
 double lens_surface_sag(const lens_surface *s, double rho);
 
+/* The index after a surface, from that before it. Indices are below 0 where the light travels back, as in textbooks on
+ * mirrors (Welford, Aberrations of Optical Systems). Pure. */
+double lens_index_after(const lens_surface *s, double before, double lambda_nm);
+
+/* The largest distance of a field from the axis, in the unit of the fields. Pure. */
+double lens_field_most(const lens_prescription *p);
+
+/* Heights and slopes of a paraxial ray: y[i] at surface i; u[i] before it, u[count] after the last one. */
+typedef struct lens_trail {
+    double y[LENS_SURFACES_MAX], u[LENS_SURFACES_MAX + 1];
+} lens_trail;
+
 /* The paraxial properties at one wavelength, in the prescription's unit; distances along +y. Kingslake and Johnson,
- * Lens Design Fundamentals, 2nd ed., chapter 3. */
+ * Lens Design Fundamentals, on paraxial rays. */
 typedef struct lens_first_order {
     double efl;            /* effective focal length, 1 / power; infinite for an afocal system */
     double back;           /* from the last vertex to the focus of an object at infinity */
+    double front;          /* from the first vertex to the point whose image is at infinity */
     double image;          /* from the last vertex to the image of the object */
     double magnification;  /* of an object at a finite distance; 0 otherwise */
     double pupil;          /* from the first vertex to the entrance pupil */
     double pupil_diameter; /* of the entrance pupil; 0: not known */
     double exit_pupil;     /* from the last vertex to the exit pupil */
+    double exit_diameter;  /* of the exit pupil; 0: not known */
+    int stop;              /* the surface of the stop; where none is stated, that which an axial beam fills first */
     double stop_diameter;  /* of the beam on the axis at the stop surface; 0: not known */
+    double stop_height;    /* of a ray at the stop, from an axial object, by its height in the entrance pupil */
     double direction;      /* 1 if light leaves along +y, -1 after an odd number of mirrors */
-    double field_slope;    /* of the chief ray of the outermost field, in the object space */
-    /* by surface: heights of the marginal ray on the axis, and of the chief ray of the outermost field */
-    double marginal[LENS_SURFACES_MAX], chief[LENS_SURFACES_MAX];
+    double field_slope;    /* of the chief ray of the outermost field, in the object space; below 0 for heights */
+    lens_trail marginal;   /* the ray on the axis through the edge of the stop */
+    lens_trail chief;      /* of the outermost field */
 } lens_first_order;
 
-/* A prescription without a stated stop has it at its first surface. Pure. */
+/* Pure. */
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
 
 /* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below

@@ -166,7 +166,7 @@ static setup measured(scene *s, const lens_prescription *p, lens_prescription *f
         focused->object_distance = rounded(fmin(1e5, 50.0 * fabs(far.efl)), 3);
     u.distance = focused->object_distance;
     u.f = lens_first_order_of(p, p->wavelength[p->primary].nm);
-    const double slope = u.f.field_slope > 0.0 ? fmin(u.f.field_slope, 2.0) : 0.2;
+    const double slope = u.f.field_slope != 0.0 ? fmin(fabs(u.f.field_slope), 2.0) : 0.2;
     u.object = slope * (u.distance + u.f.pupil);
     const lens_first_order near = lens_first_order_of(focused, p->wavelength[p->primary].nm);
     u.image = fabs(near.magnification) * u.object;

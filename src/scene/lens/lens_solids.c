@@ -476,8 +476,8 @@ static double image_height(const lens_prescription *p, const lens_first_order *f
     if (p->image_diameter > 0.0)
         return 0.5 * p->image_diameter;
     const double h = isfinite(p->object_distance)
-                         ? fabs(f->magnification) * f->field_slope * (p->object_distance + f->pupil)
-                         : fabs(f->efl) * f->field_slope;
+                         ? fabs(f->magnification * f->field_slope) * (p->object_distance + f->pupil)
+                         : fabs(f->efl * f->field_slope);
     return h > 0.0 && isfinite(h) ? h : 0.1 * fabs(f->efl);
 }
 
