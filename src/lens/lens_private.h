@@ -7,7 +7,7 @@
 #include "lens/lens.h"
 #include "render/inspect/probe.h"
 
-/* --- paraxial.c --- */
+/* --- place.c --- */
 
 /* A surface at one wavelength; indices as lens_index_after has them. */
 typedef struct lens_step {
@@ -70,6 +70,8 @@ typedef struct lens_ray {
 } lens_ray;
 
 status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagnostic *why);
+
+/* --- aim.c --- */
 
 /* The rays of one field at one wavelength. Launch coordinates (X, Y) are mm in a plane through `centre`, at right
  * angles to `along`. */

@@ -1,12 +1,16 @@
-/* Prescriptions from files and scenes, and the solids that stand for them. */
-#include "lens/lens.h"
+/* Prescriptions from files and scenes as reports need them: the solids that stand for them, the surfaces at one
+ * wavelength and the Gaussian constants, in mm. */
+#include "lens/lens_private.h"
 
 #include "scene/lens/lens_prescription.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* --- the solids --- */
 
 /* The lens of a placement: light along the +y of its frame, fields of +y towards its -z, as files are placed. */
 static void place_of(const scene *s, const lens_prescription *p, const lens_placement *at, lens_place *out)
@@ -101,4 +105,110 @@ status lens_open(const char *path, const char *system, const lens_glasses *glass
         return open_scene(path, system, p, s, place, why);
     TRY(lens_file_read(path, glasses, p, why));
     return locate_failure(why, path, lens_place_alone(p, glasses, s, place, why));
+}
+
+/* --- the surfaces and the constants --- */
+
+double lens_sag(const lens_step *s, double rho, double *slope, double *bend)
+{
+    const even_asphere *e = &s->shape;
+    const double q = rho * rho;
+    if (!asphere_reaches(e, q))
+        return *slope = *bend = NAN;
+    const double by_q = asphere_slope(e, q);
+    *slope = 2.0 * rho * by_q;
+    *bend = 2.0 * by_q + 4.0 * q * asphere_slope_rate(e, q);
+    return asphere_sag(e, q);
+}
+
+static lens_step step_of(const lens_surface *from, double mm, double z, double n, double lambda_nm)
+{
+    const double index = lens_index_after(from, n, lambda_nm),
+                 c = from->radius == 0.0 ? 0.0 : 1.0 / (from->radius * mm);
+    double even[LENS_EVEN_TERMS];
+    for (int i = 0; i < LENS_EVEN_TERMS; i++)
+        even[i] = from->even[i] / pow(mm, 3 + 2 * i);
+    return (lens_step){.c = c,
+                       .k = from->conic,
+                       .shape = asphere_of(c, from->conic, even),
+                       .z = z,
+                       .n = n,
+                       .n_after = index,
+                       .clear = from->diameter > 0.0 ? 0.5 * from->diameter * mm : INFINITY,
+                       .mirror = from->mirror,
+                       .silent = !from->mirror && index == n};
+}
+
+status lens_model_make(const lens_prescription *p, double lambda_nm, lens_model *out, diagnostic *why)
+{
+    if (p->count == 0 || p->count > LENS_SURFACES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "give at least one surface", "the lens has no surfaces");
+    const double mm = p->unit_mm;
+    if (!(p->object_distance > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "place the object before the first surface",
+                        "the object is not before the lens");
+    *out = (lens_model){.count = (int)p->count,
+                        .stop = lens_first_order_of(p, lambda_nm).stop,
+                        .lambda_nm = lambda_nm,
+                        .object_distance = p->object_distance * mm,
+                        .image_c = p->image_radius == 0.0 ? 0.0 : 1.0 / (p->image_radius * mm),
+                        .unit_mm = mm};
+    double z = 0.0, n = out->n_object = lens_medium_index(&p->object_medium, lambda_nm);
+    for (int i = 0; i < out->count; i++) {
+        out->step[i] = step_of(&p->surface[i], mm, z, n, lambda_nm);
+        n = out->step[i].n_after;
+        z += p->surface[i].thickness * mm;
+    }
+    out->n_image = n;
+    out->z_image = z;
+    if (!isfinite(z) || !isfinite(n) || n == 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "give finite distances, and media that are known at each wavelength",
+                        "the lens is not defined at %g nm", lambda_nm);
+    out->step[out->stop].clear = INFINITY; /* rays are aimed within it, and may miss it on the way there */
+    return STATUS_OK;
+}
+
+static lens_trail trail_in_mm(lens_trail t, int count, double mm)
+{
+    for (int i = 0; i < count; i++)
+        t.y[i] *= mm;
+    return t;
+}
+
+status lens_first_make(const lens_prescription *p, const lens_model *m, lens_first *out, diagnostic *why)
+{
+    const lens_first_order f = lens_first_order_of(p, m->lambda_nm);
+    const double mm = m->unit_mm, n = m->n_object, n2 = m->n_image, efl = f.efl * mm;
+    const double z_last = m->step[m->count - 1].z, front = f.front * mm, rear = z_last + f.back * mm;
+    const lens_trail marginal = trail_in_mm(f.marginal, m->count, mm);
+    const double last_u = marginal.u[m->count];
+    *out = (lens_first){.power = 1.0 / efl,
+                        .bfl = f.back * mm,
+                        .ffl = front,
+                        .z_front = front,
+                        .z_rear = rear,
+                        .z_principal = front + n * efl,
+                        .z_principal_rear = rear - n2 * efl,
+                        .z_nodal = front + n2 * efl,
+                        .z_nodal_rear = rear - n * efl,
+                        .z_entrance = f.pupil * mm,
+                        .entrance_d = f.pupil_diameter * mm,
+                        .z_exit = z_last + f.exit_pupil * mm,
+                        .exit_d = f.exit_diameter * mm,
+                        .stop_radius = 0.5 * f.stop_diameter * mm,
+                        .per_height = f.stop_height,
+                        .f_number = fabs(f.efl / f.pupil_diameter),
+                        .working_number = fabs(0.5 / (n2 * last_u)),
+                        .z_focus = z_last + f.image * mm,
+                        .magnification = f.magnification,
+                        /* at the entrance pupil, where the chief ray's height is 0 */
+                        .invariant = n * (f.field_slope * 0.5 * f.pupil_diameter * mm),
+                        .slope_max = f.field_slope,
+                        .marginal = marginal,
+                        .chief = trail_in_mm(f.chief, m->count, mm)};
+    return out->stop_radius > 0.0 && isfinite(out->stop_radius)
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT,
+                          "state the aperture (an f-number, a pupil's diameter), or the diameter of the stop",
+                          "the aperture of the lens is not known");
 }

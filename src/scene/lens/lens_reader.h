@@ -1,9 +1,10 @@
-/* Common parts of the readers of lens files: lines divided into words that know their columns. Private to this
- * folder. */
+/* Private to this folder: what readers of lens files share, lines divided into words that know their columns; and what
+ * builds the solids of a system. */
 #pragma once
 
 #include "scene/lens/lens_prescription.h"
 #include "scene/model/params.h"
+#include "scene/model/place/placement.h"
 
 enum { LENS_WORDS_MAX = 64 };
 
@@ -34,7 +35,7 @@ void lens_note(lens_prescription *p, const char *format, ...) __attribute__((for
 
 status lens_read_zmx(lens_reader *r, char *text);
 
-/* Sets parameters of a scene by name, one after the other, until the first error. Private to this folder. */
+/* Sets parameters of a scene by name, one after the other, until the first error. */
 
 typedef struct lens_target {
     scene *s;
@@ -50,3 +51,55 @@ void lens_put(lens_target *t, const char *name, const char *row, const char *for
 void lens_put_number(lens_target *t, const char *name, const char *row, double value);
 /* Whether an object of the group has the name. */
 bool lens_has(const scene *s, param_group group, const char *name);
+
+/* --- the solids of a system: lens_solids.c; lens_parts.c for their media and what holds them --- */
+
+/* Fractions of a diameter: by how much the rim of an overlapped element is smaller, so that no rims coincide; the
+ * clearance of the tube. */
+#define LENS_RIM_GAP 1e-6
+#define LENS_TUBE_CLEARANCE 1.02
+
+/* An element between two surfaces, in the order along the axis. */
+typedef struct lens_element {
+    size_t front, back;        /* indices of surfaces: side 1, side 2 */
+    double y_1, y_2;           /* of their vertices, in the prescription's unit */
+    double length;             /* between them, as published */
+    double diameter;           /* of the rim */
+    double before, after;      /* by how much sides 1 and 2 are moved into the neighbours to which it is cemented */
+    int64_t rank;              /* priority above that of the others it is cemented to */
+    const lens_medium *medium; /* NULL: a mirror */
+    double direction;          /* of the light before a mirror */
+    object_name name;
+} lens_element;
+
+typedef struct lens_builder {
+    lens_target t;
+    double leader; /* height of the first solid */
+    const lens_prescription *p;
+    const lens_placement *at;
+    mat3 turn;
+    double y[LENS_SURFACES_MAX + 1]; /* of the vertices, and of the image */
+    lens_element element[LENS_SURFACES_MAX];
+    size_t count;
+} lens_builder;
+
+/* NAME-rest. */
+void lens_part_name(const lens_builder *b, object_name name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Places a solid at a height along the axis. The first one leads, the others follow it. */
+void lens_put_at(lens_builder *b, const char *name, double y);
+/* The name of the material of a medium; the scene's own material of that name has precedence. */
+void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name);
+/* The name of a black opaque material for stops and mounts. */
+const char *lens_black(lens_builder *b);
+/* The height of a surface at a radius, within its diameter. */
+double lens_side_height(const lens_builder *b, size_t surface, double rho);
+bool lens_is_air(const lens_medium *m);
+/* The half diagonal of the image of the outermost field. */
+double lens_image_height(const lens_prescription *p, const lens_first_order *f);
+/* In air, a ring in the plane of the stop, which yields to glass. On a surface of glass, a ring in the air at the edge
+ * of the clear diameter, which cuts glass beyond it. outer: its outer radius. */
+void lens_add_stop(lens_builder *b, double outer);
+void lens_add_mounts(lens_builder *b, double outer);
+/* A white solid whose side towards the light is the image's surface. */
+void lens_add_screen(lens_builder *b);

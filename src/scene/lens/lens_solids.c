@@ -8,43 +8,13 @@
 #include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Fractions of a diameter: by how much the rim of an overlapped element is smaller, so that no rims coincide; the
- * thickness of stops and mounts; the clearance of the tube. */
-#define RIM_GAP 1e-6
-#define RING_THICKNESS 1e-4
-#define TUBE_CLEARANCE 1.02
 enum { GAP_SAMPLES = 257 };
-
-/* An element between two surfaces, in the order along the axis. */
-typedef struct element {
-    size_t front, back;        /* indices of surfaces: side 1, side 2 */
-    double y_1, y_2;           /* of their vertices, in the prescription's unit */
-    double length;             /* between them, as published */
-    double diameter;           /* of the rim */
-    double before, after;      /* by how much sides 1 and 2 are moved into the neighbours to which it is cemented */
-    int64_t rank;              /* priority above that of the others it is cemented to */
-    const lens_medium *medium; /* NULL: a mirror */
-    double direction;          /* of the light before a mirror */
-    object_name name;
-} element;
-
-typedef struct lens_builder {
-    lens_target t;
-    double leader; /* height of the first solid */
-    const lens_prescription *p;
-    const lens_placement *at;
-    mat3 turn;
-    double y[LENS_SURFACES_MAX + 1]; /* of the vertices, and of the image */
-    element element[LENS_SURFACES_MAX];
-    size_t count;
-} lens_builder;
 
 /* --- parameters by name (lens_reader.h) --- */
 
@@ -78,7 +48,7 @@ bool lens_has(const scene *s, param_group group, const char *name)
 }
 
 /* Places a solid at a height along the axis. The first one leads, the others follow it. */
-static void put_at(lens_builder *b, const char *name, double y)
+void lens_put_at(lens_builder *b, const char *name, double y)
 {
     const vec3 p = vec3_add(b->at->position, mat3_apply(b->turn, vec3_make(0.0, b->at->scale * y, 0.0))),
                r = b->at->rotation_deg;
@@ -92,9 +62,7 @@ static void put_at(lens_builder *b, const char *name, double y)
     lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", r.x, r.y, r.z);
 }
 
-static void named(const lens_builder *b, object_name name, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static void named(const lens_builder *b, object_name name, const char *format, ...)
+void lens_part_name(const lens_builder *b, object_name name, const char *format, ...)
 {
     char rest[32];
     va_list list;
@@ -104,89 +72,17 @@ static void named(const lens_builder *b, object_name name, const char *format, .
     snprintf(name, sizeof(object_name), "%.30s-%.31s", b->at->name, rest);
 }
 
-static void name_element(const lens_builder *b, element *e)
+static void name_element(const lens_builder *b, lens_element *e)
 {
     if (b->count == 1)
         snprintf(e->name, sizeof e->name, "%.60s", b->at->name);
     else
-        named(b, e->name, "%zu", b->count);
-}
-
-/* --- media --- */
-
-/* A material's name: that of the glass in lower case, or glass-1-517-64-2 for numbers. */
-static void material_name(const lens_medium *m, object_name name)
-{
-    char word[LENS_NAME_MAX];
-    lens_medium_text(m, word);
-    const bool number = isdigit((unsigned char)word[0]);
-    size_t used = (size_t)snprintf(name, sizeof(object_name), "%s", number ? "glass-" : "");
-    for (const char *c = word; *c && used < 60; c++)
-        name[used++] = isalnum((unsigned char)*c) || *c == '_' ? (char)tolower((unsigned char)*c) : '-';
-    name[used] = 0;
-}
-
-/* Indices of prescriptions are relative to air. In surroundings of index 1, which stand for air, they are used as they
- * are; otherwise they are multiplied by the index of air. */
-static double air_index(const scene *s)
-{
-    const background *b = &s->background;
-    return !surrounding_medium_name(b) && b->ior == 1.0 ? 1.0 : medium_index(media_at(0), LINE_HELIUM_D_NM);
-}
-
-static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
-{
-    object_name name;
-    snprintf(name, sizeof name, "%.60s-n", owner);
-    if (!lens_has(b->t.s, PARAM_DATA, name)) {
-        THEN(b->t.code, scene_add(b->t.s, PARAM_DATA, name, NULL, b->t.why));
-        if (b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count)
-            lens_put(&b->t, name, "file", "%s", b->at->glasses->file[m->glass_file]);
-        lens_put(&b->t, name, "glass", "%s", m->name);
-    }
-    lens_put(&b->t, owner, "medium", "data");
-    lens_put(&b->t, owner, "medium_data", "%s", name);
-}
-
-/* The name of the material of a medium; the scene's own material of that name has precedence. */
-static void medium_material(lens_builder *b, const lens_medium *m, object_name name)
-{
-    material_name(m, name);
-    if (lens_has(b->t.s, PARAM_MATERIAL, name))
-        return;
-    THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));
-    lens_put(&b->t, name, "transparency", "1");
-    const double air = air_index(b->t.s);
-    char list[2 * NUMBER_TEXT_MAX], A[NUMBER_TEXT_MAX], B[NUMBER_TEXT_MAX];
-    switch (m->kind) {
-    case LENS_AIR: break;
-    case LENS_CATALOGUE: lens_put(&b->t, name, "medium", "%s", m->name); break;
-    case LENS_DATA: add_data(b, name, m); break;
-    case LENS_MODEL:
-        lens_put(&b->t, name, "medium", "cauchy");
-        snprintf(list, sizeof list, "[%s,%s]", number_format(m->law.law.coefficient[0] * air, A),
-                 number_format(m->law.law.coefficient[1] * air, B));
-        lens_put(&b->t, name, "coefficients", "%s", list);
-        break;
-    case LENS_CONSTANT: lens_put_number(&b->t, name, "ior", m->n_d * air); break;
-    }
-}
-
-/* A black opaque material for stops and mounts. */
-static const char *black(lens_builder *b)
-{
-    static const char name[] = "blackened";
-    if (b->t.code == STATUS_OK && !lens_has(b->t.s, PARAM_MATERIAL, name)) {
-        b->t.code = scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why);
-        lens_put(&b->t, name, "color", "0.02,0.02,0.02");
-        lens_put(&b->t, name, "diffuse", "1");
-    }
-    return name;
+        lens_part_name(b, e->name, "%zu", b->count);
 }
 
 /* --- elements --- */
 
-static double side_height(const lens_builder *b, size_t surface, double rho)
+double lens_side_height(const lens_builder *b, size_t surface, double rho)
 {
     const lens_surface *s = &b->p->surface[surface];
     const double limit = s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho;
@@ -198,7 +94,8 @@ static double least_gap(const lens_builder *b, size_t front, size_t back, double
 {
     double least = INFINITY;
     for (int i = 0; i < GAP_SAMPLES; i++) {
-        const double rho = rim * i / (GAP_SAMPLES - 1), gap = side_height(b, back, rho) - side_height(b, front, rho);
+        const double rho = rim * i / (GAP_SAMPLES - 1),
+                     gap = lens_side_height(b, back, rho) - lens_side_height(b, front, rho);
         if (!(gap >= least))
             least = gap;
     }
@@ -222,7 +119,7 @@ static void put_side(lens_builder *b, const char *name, int side, const lens_sur
     }
 }
 
-static status element_check(lens_builder *b, const element *e)
+static status element_check(lens_builder *b, const lens_element *e)
 {
     diagnostic bad = {.what = ""};
     const int index = scene_find_solid(b->t.s, e->name);
@@ -234,10 +131,10 @@ static status element_check(lens_builder *b, const element *e)
                     bad.what);
 }
 
-static void put_element(lens_builder *b, const element *e)
+static void put_element(lens_builder *b, const lens_element *e)
 {
     const double scale = b->at->scale;
-    put_at(b, e->name, e->y_1 - e->before);
+    lens_put_at(b, e->name, e->y_1 - e->before);
     lens_put_number(&b->t, e->name, "thickness", (e->length + e->before + e->after) * scale);
     lens_put_number(&b->t, e->name, "diameter", e->diameter * scale);
     for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim */
@@ -248,7 +145,7 @@ static void put_element(lens_builder *b, const element *e)
 }
 
 /* The rim has the larger diameter of both sides, or the smaller one where the sides would cross. */
-static void choose_rim(lens_builder *b, element *e)
+static void choose_rim(lens_builder *b, lens_element *e)
 {
     const double d_1 = b->p->surface[e->front].diameter, d_2 = b->p->surface[e->back].diameter;
     e->diameter = fmax(d_1, d_2);
@@ -265,8 +162,8 @@ static void add_element(lens_builder *b, size_t i)
 {
     const lens_prescription *p = b->p;
     const bool forwards = b->y[i + 1] > b->y[i];
-    element *e = &b->element[b->count++];
-    *e = (element){.front = forwards ? i : i + 1, .back = forwards ? i + 1 : i, .medium = &p->surface[i].medium};
+    lens_element *e = &b->element[b->count++];
+    *e = (lens_element){.front = forwards ? i : i + 1, .back = forwards ? i + 1 : i, .medium = &p->surface[i].medium};
     e->y_1 = b->y[e->front], e->y_2 = b->y[e->back], e->length = fabs(p->surface[i].thickness);
     name_element(b, e);
     if (b->y[i + 1] == b->y[i] && b->t.code == STATUS_OK)
@@ -278,23 +175,23 @@ static void add_element(lens_builder *b, size_t i)
     object_name glass;
     if (b->t.code != STATUS_OK)
         return;
-    medium_material(b, e->medium, glass);
+    lens_medium_material(b, e->medium, glass);
     lens_add_solid(&b->t, "lens", e->name);
     lens_put(&b->t, e->name, "material", "%s", glass);
     put_side(b, e->name, 1, &p->surface[e->front]);
     put_side(b, e->name, 2, &p->surface[e->back]);
-    lens_put(&b->t, e->name, "material_rim", "%s", black(b));
+    lens_put(&b->t, e->name, "material_rim", "%s", lens_black(b));
     choose_rim(b, e);
 }
 
 /* Two neighbours with a common surface: the narrower one reaches into the other by half of the other's least thickness
  * there, and has the lower priority. */
-static void cement(lens_builder *b, element *one, element *next)
+static void cement(lens_builder *b, lens_element *one, lens_element *next)
 {
-    element *low = one->y_1 < next->y_1 ? one : next, *high = low == one ? next : one;
+    lens_element *low = one->y_1 < next->y_1 ? one : next, *high = low == one ? next : one;
     const bool low_is_wide = low->diameter > high->diameter || (low->diameter == high->diameter && low == one);
-    element *wide = low_is_wide ? low : high, *narrow = low_is_wide ? high : low;
-    narrow->diameter = fmin(narrow->diameter, wide->diameter * (1.0 - RIM_GAP));
+    lens_element *wide = low_is_wide ? low : high, *narrow = low_is_wide ? high : low;
+    narrow->diameter = fmin(narrow->diameter, wide->diameter * (1.0 - LENS_RIM_GAP));
     const double gap = least_gap(b, wide->front, wide->back, 0.5 * narrow->diameter);
     if (!(gap > 0.0) && b->t.code == STATUS_OK)
         b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "use smaller diameters",
@@ -302,7 +199,7 @@ static void cement(lens_builder *b, element *one, element *next)
     *(low_is_wide ? &narrow->before : &narrow->after) = 0.5 * gap;
 }
 
-static bool are_cemented(const element *a, const element *b)
+static bool are_cemented(const lens_element *a, const lens_element *b)
 {
     return a->medium && b->medium && (a->back == b->front || a->front == b->back);
 }
@@ -314,10 +211,10 @@ static void cement_all(lens_builder *b)
             cement(b, &b->element[i], &b->element[i + 1]);
     for (size_t round = 0; round < b->count; round++)
         for (size_t i = 0; i + 1 < b->count; i++) {
-            element *one = &b->element[i], *next = &b->element[i + 1];
+            lens_element *one = &b->element[i], *next = &b->element[i + 1];
             if (!are_cemented(one, next))
                 continue;
-            element *wide = one->diameter > next->diameter ? one : next, *narrow = wide == one ? next : one;
+            lens_element *wide = one->diameter > next->diameter ? one : next, *narrow = wide == one ? next : one;
             if (wide->rank <= narrow->rank)
                 wide->rank = narrow->rank + 1;
         }
@@ -332,11 +229,11 @@ static void cement_all(lens_builder *b)
 /* --- mirrors --- */
 
 /* A plug of the surrounding medium in the hole of a mirror. */
-static void add_hole(lens_builder *b, const element *e, double hole)
+static void add_hole(lens_builder *b, const lens_element *e, double hole)
 {
     object_name name, plug;
-    named(b, name, "hole-%zu", b->count);
-    named(b, plug, "hole");
+    lens_part_name(b, name, "hole-%zu", b->count);
+    lens_part_name(b, plug, "hole");
     const background *around = &b->t.s->background;
     if (!lens_has(b->t.s, PARAM_MATERIAL, plug)) {
         THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, plug, NULL, b->t.why));
@@ -351,7 +248,7 @@ static void add_hole(lens_builder *b, const element *e, double hole)
     const double sag = fabs(lens_surface_sag(of, 0.5 * e->diameter));
     lens_add_solid(&b->t, "cylinder", name);
     lens_put(&b->t, name, "material", "%s", plug);
-    put_at(b, name, e->y_1 - sag - length);
+    lens_put_at(b, name, e->y_1 - sag - length);
     lens_put_number(&b->t, name, "radius", 0.5 * hole * b->at->scale);
     lens_put_number(&b->t, name, "height", (3.0 * length + 2.0 * sag) * b->at->scale);
     lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + 2 + LENS_SURFACES_MAX));
@@ -371,8 +268,8 @@ static const char *mirror_material(lens_builder *b)
 static void add_mirror(lens_builder *b, size_t i, double direction)
 {
     const lens_surface *s = &b->p->surface[i];
-    element *e = &b->element[b->count++];
-    *e = (element){.front = i, .back = i, .diameter = s->diameter, .direction = direction, .rank = 0};
+    lens_element *e = &b->element[b->count++];
+    *e = (lens_element){.front = i, .back = i, .diameter = s->diameter, .direction = direction, .rank = 0};
     name_element(b, e);
     const double sag = lens_surface_sag(s, 0.5 * s->diameter),
                  thickness = 0.125 * s->diameter + fmax(0.0, sag * direction);
@@ -394,114 +291,7 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
         add_hole(b, e, s->hole);
 }
 
-/* --- stop, mounts, screen --- */
-
-/* A ring from inner to outer radius between two heights. */
-static void add_ring(lens_builder *b, const char *name, double inner, double outer, double y, double thickness,
-                     int64_t priority)
-{
-    const double scale = b->at->scale;
-    const char *paint = black(b);
-    lens_add_solid(&b->t, "cup", name);
-    lens_put(&b->t, name, "material", "%s", paint);
-    put_at(b, name, y);
-    lens_put_number(&b->t, name, "radius", outer * scale);
-    lens_put_number(&b->t, name, "inner_radius", inner * scale);
-    lens_put_number(&b->t, name, "height", thickness * scale);
-    lens_put(&b->t, name, "floor", "0");
-    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + priority));
-}
-
-/* The largest radius of the elements. */
-static double widest(const lens_builder *b)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < b->count; i++)
-        most = fmax(most, 0.5 * b->element[i].diameter);
-    return most;
-}
-
-static bool is_air(const lens_medium *m)
-{
-    return m->kind == LENS_AIR;
-}
-
-/* In air, a ring in the plane of the stop, which yields to glass. On a surface of glass, a ring in the air at the edge
- * of the clear diameter, which cuts glass beyond it. */
-static void add_stop(lens_builder *b, double outer)
-{
-    const lens_prescription *p = b->p;
-    if (p->stop < 0 || p->surface[p->stop].mirror)
-        return;
-    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
-    const lens_surface *s = &p->surface[p->stop];
-    const double diameter = f.stop_diameter > 0.0 ? f.stop_diameter : s->diameter, thin = RING_THICKNESS * diameter;
-    if (!(diameter > 0.0) || !(0.5 * diameter < outer))
-        return;
-    const bool before = is_air(p->stop > 0 ? &p->surface[p->stop - 1].medium : &p->object_medium),
-               after = is_air(&s->medium), in_air = before && after;
-    const double sag = lens_surface_sag(s, 0.5 * diameter), edge = b->y[p->stop] + (isnan(sag) ? 0.0 : sag),
-                 from = in_air  ? edge - 0.5 * thin
-                        : after ? edge
-                                : edge - thin;
-    object_name name;
-    named(b, name, "stop");
-    add_ring(b, name, 0.5 * diameter, outer, from, thin, in_air ? 1 : LENS_SURFACES_MAX);
-}
-
-static void add_mounts(lens_builder *b, double outer)
-{
-    double low = INFINITY, high = -INFINITY;
-    object_name name;
-    for (size_t i = 0; i < b->count; i++) {
-        const element *e = &b->element[i];
-        const double rim = 0.5 * e->diameter * (1.0 - RIM_GAP);
-        if (!e->medium)
-            return; /* a tube would shade mirrors */
-        const double y_1 = side_height(b, e->front, rim), y_2 = side_height(b, e->back, rim),
-                     thin = fmin(RING_THICKNESS * e->diameter, 0.5 * (y_2 - y_1));
-        low = fmin(low, y_1), high = fmax(high, y_2);
-        named(b, name, "mount-%zu", i + 1);
-        if (thin > 0.0)
-            add_ring(b, name, rim, outer, 0.5 * (y_1 + y_2 - thin), thin, 0);
-    }
-    named(b, name, "tube");
-    if (high > low)
-        add_ring(b, name, outer, outer * TUBE_CLEARANCE, low, high - low, 0);
-}
-
-/* The half diagonal of the image of the outermost field. */
-static double image_height(const lens_prescription *p, const lens_first_order *f)
-{
-    if (p->image_diameter > 0.0)
-        return 0.5 * p->image_diameter;
-    const double h = isfinite(p->object_distance)
-                         ? fabs(f->magnification * f->field_slope) * (p->object_distance + f->pupil)
-                         : fabs(f->efl * f->field_slope);
-    return h > 0.0 && isfinite(h) ? h : 0.1 * fabs(f->efl);
-}
-
-/* A white lens-shaped solid whose side towards the light is the image surface. */
-static void add_screen(lens_builder *b)
-{
-    const lens_prescription *p = b->p;
-    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
-    const double half = 1.05 * image_height(p, &f), y = b->y[p->count];
-    const lens_surface s = {.radius = p->image_radius};
-    const double sag = lens_surface_sag(&s, half), thickness = 0.05 * half + fmax(0.0, f.direction * sag);
-    object_name name;
-    if (!isfinite(y) || isnan(sag) || !(half > 0.0))
-        return;
-    named(b, name, "screen");
-    lens_add_solid(&b->t, "lens", name);
-    put_at(b, name, f.direction > 0.0 ? y : y - thickness);
-    lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_1" : "radius_2", p->image_radius * b->at->scale);
-    lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_2" : "radius_1", 0.0);
-    lens_put_number(&b->t, name, "thickness", thickness * b->at->scale);
-    lens_put_number(&b->t, name, "diameter", 2.0 * half * b->at->scale);
-    lens_put(&b->t, name, "diffuse", "0.9");
-    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + 3 + LENS_SURFACES_MAX));
-}
+/* --- the system --- */
 
 static void build(lens_builder *b)
 {
@@ -513,17 +303,20 @@ static void build(lens_builder *b)
         if (p->surface[i].mirror) {
             add_mirror(b, i, direction);
             direction = -direction;
-        } else if (!is_air(&p->surface[i].medium) && i + 1 < p->count) {
+        } else if (!lens_is_air(&p->surface[i].medium) && i + 1 < p->count) {
             add_element(b, i);
         }
     }
     cement_all(b);
-    const double outer = TUBE_CLEARANCE * widest(b);
-    add_stop(b, outer);
+    double widest = 0.0;
+    for (size_t i = 0; i < b->count; i++)
+        widest = fmax(widest, 0.5 * b->element[i].diameter);
+    const double outer = LENS_TUBE_CLEARANCE * widest;
+    lens_add_stop(b, outer);
     if (b->at->mount)
-        add_mounts(b, outer);
+        lens_add_mounts(b, outer);
     if (b->at->screen)
-        add_screen(b);
+        lens_add_screen(b);
 }
 
 /* With an image within a medium, as in an eye: the medium ends at a flat surface within the screen, or at the image. */
@@ -531,7 +324,7 @@ static status close_image(const lens_prescription *p, bool screen, lens_prescrip
 {
     const lens_surface *last = &p->surface[p->count - 1];
     const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
-    const double half = image_height(p, &f), beyond = screen ? 0.02 * half : 0.0;
+    const double half = lens_image_height(p, &f), beyond = screen ? 0.02 * half : 0.0;
     *out = *p;
     out->surface = malloc((p->count + 1) * sizeof *p->surface);
     if (!out->surface)
@@ -550,7 +343,7 @@ status lens_add_to_scene(scene *s, const lens_prescription *p, const lens_placem
         return diagnose(why, STATUS_BAD_INPUT, "give surfaces", "%.60s has no surfaces", at->name);
     lens_builder *b = calloc(1, sizeof *b);
     lens_prescription closed = {.surface = NULL};
-    const bool within = !is_air(&p->surface[p->count - 1].medium) && !p->surface[p->count - 1].mirror;
+    const bool within = !lens_is_air(&p->surface[p->count - 1].medium) && !p->surface[p->count - 1].mirror;
     if (!b || (within && close_image(p, at->screen, &closed) != STATUS_OK)) {
         free(b);
         return out_of_memory(why);

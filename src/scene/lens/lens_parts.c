@@ -1,0 +1,184 @@
+/* What the elements of a lens system are made of, and what holds them: media, stop, mounts and tube, and the screen
+ * (lens_prescription.h). */
+#include "base/number.h"
+#include "scene/lens/lens_reader.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/scene.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+
+#define RING_THICKNESS 1e-4 /* of stops and mounts, of a diameter */
+
+/* --- media --- */
+
+/* A material's name: that of the glass in lower case, or glass-1-517-64-2 for numbers. */
+static void material_name(const lens_medium *m, object_name name)
+{
+    char word[LENS_NAME_MAX];
+    lens_medium_text(m, word);
+    const bool number = isdigit((unsigned char)word[0]);
+    size_t used = (size_t)snprintf(name, sizeof(object_name), "%s", number ? "glass-" : "");
+    for (const char *c = word; *c && used < 60; c++)
+        name[used++] = isalnum((unsigned char)*c) || *c == '_' ? (char)tolower((unsigned char)*c) : '-';
+    name[used] = 0;
+}
+
+/* Indices of prescriptions are relative to air. In surroundings of index 1, which stand for air, they are used as they
+ * are; otherwise they are multiplied by the index of air. */
+static double air_index(const scene *s)
+{
+    const background *b = &s->background;
+    return !surrounding_medium_name(b) && b->ior == 1.0 ? 1.0 : medium_index(media_at(0), LINE_HELIUM_D_NM);
+}
+
+static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
+{
+    object_name name;
+    snprintf(name, sizeof name, "%.60s-n", owner);
+    if (!lens_has(b->t.s, PARAM_DATA, name)) {
+        THEN(b->t.code, scene_add(b->t.s, PARAM_DATA, name, NULL, b->t.why));
+        if (b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count)
+            lens_put(&b->t, name, "file", "%s", b->at->glasses->file[m->glass_file]);
+        lens_put(&b->t, name, "glass", "%s", m->name);
+    }
+    lens_put(&b->t, owner, "medium", "data");
+    lens_put(&b->t, owner, "medium_data", "%s", name);
+}
+
+/* The name of the material of a medium; the scene's own material of that name has precedence. */
+void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name)
+{
+    material_name(m, name);
+    if (lens_has(b->t.s, PARAM_MATERIAL, name))
+        return;
+    THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));
+    lens_put(&b->t, name, "transparency", "1");
+    const double air = air_index(b->t.s);
+    char list[2 * NUMBER_TEXT_MAX], A[NUMBER_TEXT_MAX], B[NUMBER_TEXT_MAX];
+    switch (m->kind) {
+    case LENS_AIR: break;
+    case LENS_CATALOGUE: lens_put(&b->t, name, "medium", "%s", m->name); break;
+    case LENS_DATA: add_data(b, name, m); break;
+    case LENS_MODEL:
+        lens_put(&b->t, name, "medium", "cauchy");
+        snprintf(list, sizeof list, "[%s,%s]", number_format(m->law.law.coefficient[0] * air, A),
+                 number_format(m->law.law.coefficient[1] * air, B));
+        lens_put(&b->t, name, "coefficients", "%s", list);
+        break;
+    case LENS_CONSTANT: lens_put_number(&b->t, name, "ior", m->n_d * air); break;
+    }
+}
+
+/* A black opaque material for stops and mounts. */
+const char *lens_black(lens_builder *b)
+{
+    static const char name[] = "blackened";
+    if (b->t.code == STATUS_OK && !lens_has(b->t.s, PARAM_MATERIAL, name)) {
+        b->t.code = scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why);
+        lens_put(&b->t, name, "color", "0.02,0.02,0.02");
+        lens_put(&b->t, name, "diffuse", "1");
+    }
+    return name;
+}
+
+/* --- rings and the screen --- */
+
+/* A ring from inner to outer radius between two heights. */
+static void add_ring(lens_builder *b, const char *name, double inner, double outer, double y, double thickness,
+                     int64_t priority)
+{
+    const double scale = b->at->scale;
+    const char *paint = lens_black(b);
+    lens_add_solid(&b->t, "cup", name);
+    lens_put(&b->t, name, "material", "%s", paint);
+    lens_put_at(b, name, y);
+    lens_put_number(&b->t, name, "radius", outer * scale);
+    lens_put_number(&b->t, name, "inner_radius", inner * scale);
+    lens_put_number(&b->t, name, "height", thickness * scale);
+    lens_put(&b->t, name, "floor", "0");
+    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + priority));
+}
+
+bool lens_is_air(const lens_medium *m)
+{
+    return m->kind == LENS_AIR;
+}
+
+/* In air, a ring in the plane of the stop, which yields to glass. On a surface of glass, a ring in the air at the edge
+ * of the clear diameter, which cuts glass beyond it. */
+void lens_add_stop(lens_builder *b, double outer)
+{
+    const lens_prescription *p = b->p;
+    if (p->stop < 0 || p->surface[p->stop].mirror)
+        return;
+    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const lens_surface *s = &p->surface[p->stop];
+    const double diameter = f.stop_diameter > 0.0 ? f.stop_diameter : s->diameter, thin = RING_THICKNESS * diameter;
+    if (!(diameter > 0.0) || !(0.5 * diameter < outer))
+        return;
+    const bool before = lens_is_air(p->stop > 0 ? &p->surface[p->stop - 1].medium : &p->object_medium),
+               after = lens_is_air(&s->medium), in_air = before && after;
+    const double sag = lens_surface_sag(s, 0.5 * diameter), edge = b->y[p->stop] + (isnan(sag) ? 0.0 : sag),
+                 from = in_air  ? edge - 0.5 * thin
+                        : after ? edge
+                                : edge - thin;
+    object_name name;
+    lens_part_name(b, name, "stop");
+    add_ring(b, name, 0.5 * diameter, outer, from, thin, in_air ? 1 : LENS_SURFACES_MAX);
+}
+
+void lens_add_mounts(lens_builder *b, double outer)
+{
+    double low = INFINITY, high = -INFINITY;
+    object_name name;
+    for (size_t i = 0; i < b->count; i++) {
+        const lens_element *e = &b->element[i];
+        const double rim = 0.5 * e->diameter * (1.0 - LENS_RIM_GAP);
+        if (!e->medium)
+            return; /* a tube would shade mirrors */
+        const double y_1 = lens_side_height(b, e->front, rim), y_2 = lens_side_height(b, e->back, rim),
+                     thin = fmin(RING_THICKNESS * e->diameter, 0.5 * (y_2 - y_1));
+        low = fmin(low, y_1), high = fmax(high, y_2);
+        lens_part_name(b, name, "mount-%zu", i + 1);
+        if (thin > 0.0)
+            add_ring(b, name, rim, outer, 0.5 * (y_1 + y_2 - thin), thin, 0);
+    }
+    lens_part_name(b, name, "tube");
+    if (high > low)
+        add_ring(b, name, outer, outer * LENS_TUBE_CLEARANCE, low, high - low, 0);
+}
+
+/* The half diagonal of the image of the outermost field. */
+double lens_image_height(const lens_prescription *p, const lens_first_order *f)
+{
+    if (p->image_diameter > 0.0)
+        return 0.5 * p->image_diameter;
+    const double h = isfinite(p->object_distance)
+                         ? fabs(f->magnification * f->field_slope) * (p->object_distance + f->pupil)
+                         : fabs(f->efl * f->field_slope);
+    return h > 0.0 && isfinite(h) ? h : 0.1 * fabs(f->efl);
+}
+
+/* A white lens-shaped solid whose side towards the light is the image surface. */
+void lens_add_screen(lens_builder *b)
+{
+    const lens_prescription *p = b->p;
+    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const double half = 1.05 * lens_image_height(p, &f), y = b->y[p->count];
+    const lens_surface s = {.radius = p->image_radius};
+    const double sag = lens_surface_sag(&s, half), thickness = 0.05 * half + fmax(0.0, f.direction * sag);
+    object_name name;
+    if (!isfinite(y) || isnan(sag) || !(half > 0.0))
+        return;
+    lens_part_name(b, name, "screen");
+    lens_add_solid(&b->t, "lens", name);
+    lens_put_at(b, name, f.direction > 0.0 ? y : y - thickness);
+    lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_1" : "radius_2", p->image_radius * b->at->scale);
+    lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_2" : "radius_1", 0.0);
+    lens_put_number(&b->t, name, "thickness", thickness * b->at->scale);
+    lens_put_number(&b->t, name, "diameter", 2.0 * half * b->at->scale);
+    lens_put(&b->t, name, "diffuse", "0.9");
+    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + 3 + LENS_SURFACES_MAX));
+}
