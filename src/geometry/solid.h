@@ -74,3 +74,9 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point);
  * about z: counter-clockwise for an eye that looks along the axis, because the world is left-handed (x right, y up, z
  * away). */
 mat3 rotation_from_deg(vec3 rotation_deg);
+/* Angles whose rotation_from_deg is r, settled. */
+vec3 rotation_to_deg(mat3 r);
+/* a b: first b, then a. */
+mat3 mat3_product(mat3 a, mat3 b);
+/* The nearest multiple of 1e-6 degrees if the angle is within 1e-12 of it, so that round numbers stay round. */
+double settled_deg(double degrees);

@@ -97,7 +97,8 @@ static const decision decisions[] = {
 
     {PARAM_BEAM, "lights", BEAM_LIGHT, BEAM_LIGHT},
     {PARAM_BEAM,
-     "kind position target direction normal rays pattern field_columns field_rows field_deg field_width angle_deg "
+     "kind follows position target direction normal rays pattern field_columns field_rows field_deg field_width "
+     "angle_deg "
      "width white lambda_nm wavelengths power branches depth "
      "min_fraction color visible profile",
      UNSEEN, UNSEEN}, /* without `lights` an image shows no beam */

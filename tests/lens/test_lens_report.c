@@ -8,6 +8,8 @@
 #include <cmocka.h>
 
 #include "lens/lens.h"
+#include "scene/model/edit/edit.h"
+#include "scene/model/params.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -440,6 +442,67 @@ static void a_plate_has_one_ghost_with_fresnels_weight(void **state)
     end(b);
 }
 
+/* All rows but those of diffraction, whose waves are not scaled. */
+static void same_reports(const lens_report *a, const lens_report *b, double scale)
+{
+    static const char *const scaled[] = {"first-order",  "surfaces",     "seidel",     "seidel-sum",
+                                         "axial-colour", "field-curves", "chief",      "fan-tangential",
+                                         "fan-sagittal", "spot",         "vignetting", "ghosts"};
+    size_t compared = 0;
+    assert_int_equal(a->count, b->count);
+    for (size_t i = 0; i < a->count; i++) {
+        const lens_row *r = &a->row[i], *t = &b->row[i];
+        assert_string_equal(r->section, t->section);
+        assert_string_equal(r->quantity, t->quantity);
+        for (size_t k = 0; k < sizeof scaled / sizeof *scaled; k++)
+            if (strcmp(scaled[k], r->section) == 0 && strcmp(r->quantity, "airy_radius") != 0 && isfinite(r->value)) {
+                const double by = strcmp(r->unit, "mm") == 0      ? scale
+                                  : strcmp(r->unit, "1/mm") == 0  ? 1.0 / scale
+                                  : strcmp(r->unit, "waves") == 0 ? scale
+                                                                  : 1.0;
+                assert_near(by * r->value, t->value, 1e-9 + 1e-7 * fabs(t->value));
+                compared++;
+            }
+    }
+    assert_true(compared > 500);
+}
+
+static lens_report report_of_scene(const bench *b, const char *const *changes)
+{
+    scene *s;
+    diagnostic why = {.what = ""};
+    lens_report out;
+    lens_place place;
+    lens_prescription p;
+    assert_int_equal(lens_scene_create(&b->p, NULL, &s, &why), STATUS_OK);
+    for (; *changes; changes++)
+        assert_int_equal(scene_set_assignment(s, *changes, &why), STATUS_OK);
+    assert_int_equal(scene_load(s, &why), STATUS_OK);
+    if (lens_place_in_scene(s, "objective", &p, &place, &why) != STATUS_OK ||
+        lens_report_make(&p, &place, isa_best(), &b->options, &out, &why) != STATUS_OK)
+        fail_msg("%s", why.what);
+    lens_prescription_release(&p);
+    scene_destroy(s);
+    return out;
+}
+
+static void a_moved_turned_and_scaled_system_has_the_same_report(void **state)
+{
+    (void)state;
+    bench *b = double_gauss();
+    b->options = (lens_options){.fan_rays = 6, .spot_grid = 8, .wave_grid = 16};
+    b->p.field[1] = (lens_field){3.0, 8.0, 1.0};
+    b->p.field_count = 2;
+    const char *const none[] = {NULL}, *const all[] = {"wall.visible=off", "objective.scale=2.5,2.5,2.5",
+                                                       "objective.rotation=-30,20,250",
+                                                       "objective.position=500,20,-3000", NULL};
+    lens_report here = report_of_scene(b, none), there = report_of_scene(b, all);
+    same_reports(&here, &there, 2.5);
+    lens_report_release(&here);
+    lens_report_release(&there);
+    end(b);
+}
+
 static void what_cannot_be_reported_says_why(void **state)
 {
     (void)state;
@@ -477,6 +540,7 @@ int main(void)
         cmocka_unit_test(the_triplet_objective_has_optilands_distortion_and_focus),
         cmocka_unit_test(a_rim_takes_the_part_of_the_pupil_that_two_circles_leave),
         cmocka_unit_test(a_plate_has_one_ghost_with_fresnels_weight),
+        cmocka_unit_test(a_moved_turned_and_scaled_system_has_the_same_report),
         cmocka_unit_test(what_cannot_be_reported_says_why),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

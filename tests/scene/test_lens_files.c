@@ -457,6 +457,98 @@ static void systems_move_as_one(void **state)
     scene_destroy(s);
 }
 
+/* A point of the world in the frame of the solid objective. */
+static vec3 local_of(const scene *s, vec3 point)
+{
+    const solid_shape *at = &s->solids[scene_find_solid(s, "objective")].shape;
+    const vec3 v = mat3_apply_transposed(rotation_from_deg(at->rotation_deg), vec3_sub(point, at->position));
+    return vec3_scale(v, 1.0 / at->scale.x);
+}
+
+static vec3 world_of(const scene *s, vec3 local)
+{
+    const solid_shape *at = &s->solids[scene_find_solid(s, "objective")].shape;
+    const vec3 v = mat3_apply(rotation_from_deg(at->rotation_deg), vec3_scale(local, at->scale.x));
+    return vec3_add(v, at->position);
+}
+
+/* The ray that begins at a point near a beam's start, along the beam. */
+static ray_tree along_beam(const scene *s, const beam *b, vec3 local)
+{
+    probe *tracer;
+    ray_tree tree = {.node = NULL};
+    assert_int_equal(probe_create(s, isa_best(), &tracer, NULL), STATUS_OK);
+    probe_limit_depth(tracer, 64, "");
+    assert_int_equal(probe_path(tracer, world_of(s, local), vec3_normalize(beam_axis(b)), -1, &tree, NULL), STATUS_OK);
+    probe_destroy(tracer);
+    return tree;
+}
+
+static void same_rays(const lens_prescription *p, const scene *a, const scene *b)
+{
+    assert_int_equal(a->beam_count, b->beam_count);
+    for (size_t i = 0; i < a->beam_count; i++) {
+        const vec3 start = local_of(a, a->beams[i].position), there = local_of(b, b->beams[i].position);
+        assert_near(vec3_length(vec3_sub(start, there)), 0.0, 1e-12, "start");
+        assert_near(a->beams[i].width * 3.0, b->beams[i].width, 1e-12, "width");
+        for (int k = 0; k < 5; k++) {
+            const vec3 from = vec3_add(start, vec3_make(0.4 * k - 0.8, 0.0, 0.3 * k - 0.6));
+            ray_tree one = along_beam(a, &a->beams[i], from), two = along_beam(b, &b->beams[i], from);
+            for (size_t n = 0; n <= refractions_of(p); n++) {
+                assert_true(n < one.count && n < two.count);
+                const vec3 x = local_of(a, one.node[n].origin), y = local_of(b, two.node[n].origin);
+                assert_near(vec3_length(vec3_sub(x, y)), 0.0, 1e-11, "a hit");
+            }
+            ray_tree_release(&one), ray_tree_release(&two);
+        }
+    }
+}
+
+static void moved_turned_and_scaled_systems_have_the_same_rays(void **state)
+{
+    (void)state;
+    diagnostic why = {.what = ""};
+    lens_prescription p = read_lens(LENSES "cooke-triplet.csv"), again;
+    scene *a = scene_of(&p, "here"), *b = scene_of(&p, "there"), *c = scene_of(&p, "scaled by the page");
+    assert_int_equal(scene_set_assignment(b, "objective.position=100,-20,3000", &why), STATUS_OK);
+    assert_int_equal(scene_set_assignment(b, "objective.rotation=20,130,-40", &why), STATUS_OK);
+    assert_int_equal(scene_set_assignment(b, "objective.scale=3,3,3", &why), STATUS_OK);
+    assert_int_equal(scene_check(b, &why), STATUS_OK);
+    same_rays(&p, a, b);
+    assert_int_equal(lens_of_scene(b, "objective", &again, NULL, &why), STATUS_OK);
+    for (size_t i = 0; i < p.count; i++) {
+        assert_near(again.surface[i].radius, 3.0 * p.surface[i].radius, 1e-9 * fabs(p.surface[i].radius), "radius");
+        assert_near(again.surface[i].thickness, 3.0 * p.surface[i].thickness, 1e-9, "thickness");
+    }
+    lens_prescription_release(&again);
+    /* as the page drags: one scale, then a move and a turn of the first element */
+    assert_int_equal(scene_scale(c, "objective", 3.0, &why), STATUS_OK);
+    assert_int_equal(scene_move(c, "objective", vec3_make(0, 5, 0), &why), STATUS_OK);
+    assert_int_equal(scene_turn(c, "objective", vec3_make(0, 70, 0), &why), STATUS_OK);
+    assert_int_equal(lens_of_scene(c, "objective", &again, NULL, &why), STATUS_OK);
+    assert_near(lens_first_order_of(&again, 550.0).efl, 3.0 * lens_first_order_of(&p, 550.0).efl, 1e-9, "scaled");
+    const vec3 to = mat3_apply_transposed(rotation_from_deg(vec3_make(0, 70, 0)), c->beams[2].direction);
+    assert_near(to.x * a->beams[2].direction.z, to.z * a->beams[2].direction.x, 1e-12, "turned");
+    assert_near(c->beams[2].width, 3.0 * a->beams[2].width, 1e-12, "width");
+    lens_prescription_release(&again);
+    /* a follower's own rotation and scale are within its leader's */
+    assert_int_equal(scene_set_assignment(a, "objective-2.rotation=0,0,10", &why), STATUS_OK);
+    assert_int_equal(scene_set_assignment(a, "objective-2.scale=2,2,2", &why), STATUS_OK);
+    assert_int_equal(scene_set_assignment(a, "objective.scale=3,3,3", &why), STATUS_OK);
+    const solid_shape *led = &a->solids[scene_find_solid(a, "objective-2")].shape;
+    const vec3 axis = mat3_apply(rotation_from_deg(led->rotation_deg), vec3_make(0, 1, 0)),
+               expected = mat3_apply(rotation_from_deg(vec3_make(90, 0, 0)),
+                                     mat3_apply(rotation_from_deg(vec3_make(0, 0, 10)), vec3_make(0, 1, 0)));
+    assert_near(vec3_length(vec3_sub(axis, expected)), 0.0, 1e-14, "rotated");
+    assert_near(led->scale.y, 6.0, 0.0, "scaled");
+    assert_int_equal(scene_set_assignment(a, "objective.scale=3,2,3", &why), STATUS_OK);
+    assert_int_equal(scene_check(a, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "not scaled evenly"));
+    assert_int_equal(scene_remove(a, "objective", &why), STATUS_BAD_INPUT);
+    scene_destroy(a), scene_destroy(b), scene_destroy(c);
+    lens_prescription_release(&p);
+}
+
 static void written_systems_are_read_back(void **state)
 {
     (void)state;
@@ -508,6 +600,8 @@ static void mistakes_in_scenes_are_located(void **state)
                 "own place");
     wrong_scene("solids:\n  a: {shape: box}\n  b: {shape: box, follows: a}\n  c: {shape: box, follows: b}\n", 4, 3,
                 "follows another solid");
+    wrong_scene("beams:\n  a: {follows: b}\nsolids:\n  c: {shape: box}\n", 2, 3, "no solid has that name");
+    wrong_scene("beams:\n  a: {follows: b}\nsolids:\n  b: {shape: box, scale: [1, 2, 1]}\n", 2, 3, "not scaled evenly");
 }
 
 /* A cup with a floor of 0 is a tube: rays pass along its axis, and not through its wall. */
@@ -546,6 +640,7 @@ int main(void)
         cmocka_unit_test(media_have_many_spellings),
         cmocka_unit_test(damaged_files_are_refused_or_read),
         cmocka_unit_test(systems_move_as_one),
+        cmocka_unit_test(moved_turned_and_scaled_systems_have_the_same_rays),
         cmocka_unit_test(written_systems_are_read_back),
         cmocka_unit_test(mistakes_in_scenes_are_located),
         cmocka_unit_test(a_cup_without_a_floor_is_a_tube),

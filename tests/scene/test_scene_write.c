@@ -240,7 +240,8 @@ static void every_parameter_round_trips_with_other_values(void **state)
                                                                    : at.row->type == PARAM_PATH ? "model"
                                                                                                 : "body") != 0)
                 continue; /* skipped: a file replaces a generator, and slimes have rows of their own */
-            if (strcmp(at.row->name, "follows") == 0 && strcmp(owners[o], "rider") != 0)
+            if (at.object_group == PARAM_SOLID && strcmp(at.row->name, "follows") == 0 &&
+                strcmp(owners[o], "rider") != 0)
                 continue; /* another solid would also lose its place */
             if (at.object_group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid is sufficient */

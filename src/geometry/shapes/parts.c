@@ -4,6 +4,35 @@
 #include <math.h>
 
 /* R = R_z R_y R_x: rotation about x comes first. R_x rotates y towards z, R_y z towards x, R_z x towards y. */
+double settled_deg(double degrees)
+{
+    double round = floor(degrees * 1e6 + 0.5) / 1e6;
+    return fabs(round - degrees) < 1e-12 ? round : degrees;
+}
+
+mat3 mat3_product(mat3 a, mat3 b)
+{
+    mat3 c;
+    for (int i = 0; i < 3; i++)
+        c.row[i] = mat3_apply_transposed(b, a.row[i]);
+    return c;
+}
+
+/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is computed from R_z^-1 r instead of r's last row, so
+ * that it compensates any choice of z when y is 90 or -90 degrees: then the local x axis is along the world's z, and x
+ * and z rotate about the same line. Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive
+ * rotations, Computers & Graphics 17 (1993). */
+vec3 rotation_to_deg(mat3 r)
+{
+    const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
+    const double z = elementary_atan2_deg(r.row[1].x, r.row[0].x);
+    double sz, cz;
+    elementary_sincos_deg(z, &sz, &cz);
+    const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
+    return vec3_make(settled_deg(elementary_atan2_deg(-minus_sin_x, cos_x)),
+                     settled_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), settled_deg(z));
+}
+
 mat3 rotation_from_deg(vec3 rotation_deg)
 {
     double sx, cx, sy, cy, sz, cz;

@@ -208,11 +208,10 @@ static status read_material_name(const scene_reader *r, const node *key, const n
 static status read_leader(const scene_reader *r, const node *key, const node *map, size_t index)
 {
     const node *follows = node_get(map, "follows"), *own = node_get(map, "position");
-    own = own ? own : node_get(map, "rotation");
     if (!follows)
         return STATUS_OK;
     if (own)
-        return node_error(r->file, own, r->why, "keep either follows and offset, or position and rotation",
+        return node_error(r->file, own, r->why, "keep either follows and offset, or position",
                           "%.80s follows another solid, but has its own place", key->text);
     const param_place at = {param_find(PARAM_SOLID, "follows"), PARAM_SOLID, index, -1};
     return read_value(r, key->text, &at, follows);
@@ -346,18 +345,18 @@ static status read_lenses(const scene_reader *r, const char *name, param_group g
 
 static status read_sections(const scene_reader *r)
 {
-    /* In this order, not the file's: solids refer to materials, and are checked with render.weights. */
+    /* In this order, not the file's: solids refer to materials, and are checked with render.weights; beams to solids. */
     static const struct section {
         const char *name;
         status (*read)(const scene_reader *, const char *, param_group, const node *);
         param_group group;
     } sections[] = {
-        {"title", read_title, PARAM_GROUP_COUNT},   {"render", read_settings, PARAM_RENDER},
-        {"camera", read_camera, PARAM_CAMERA},      {"background", read_settings, PARAM_BACKGROUND},
-        {"meshes", read_objects, PARAM_MESH},       {"textures", read_objects, PARAM_TEXTURE},
-        {"data", read_objects, PARAM_DATA},         {"materials", read_objects, PARAM_MATERIAL},
-        {"lights", read_objects, PARAM_LIGHT},      {"beams", read_objects, PARAM_BEAM},
-        {"lens_systems", read_lenses, PARAM_SOLID}, {"solids", read_objects, PARAM_SOLID},
+        {"title", read_title, PARAM_GROUP_COUNT}, {"render", read_settings, PARAM_RENDER},
+        {"camera", read_camera, PARAM_CAMERA},    {"background", read_settings, PARAM_BACKGROUND},
+        {"meshes", read_objects, PARAM_MESH},     {"textures", read_objects, PARAM_TEXTURE},
+        {"data", read_objects, PARAM_DATA},       {"materials", read_objects, PARAM_MATERIAL},
+        {"lights", read_objects, PARAM_LIGHT},    {"lens_systems", read_lenses, PARAM_SOLID},
+        {"solids", read_objects, PARAM_SOLID},    {"beams", read_objects, PARAM_BEAM},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);

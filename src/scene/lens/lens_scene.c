@@ -11,6 +11,12 @@
 
 #define OFF_AXIS 1e-9 /* of the diameter: rounding of positions */
 
+/* The factor of a solid's own and its leader's scale. */
+static double size_of(const solid *of)
+{
+    return of->shape.scale.x;
+}
+
 /* A lens of the scene, with its place on the axis. */
 typedef struct placed_lens {
     const solid *of;
@@ -74,7 +80,7 @@ static status check_axis(const lens_finder *f, const solid *of)
     const vec3 way = placed_axis(&turn, 1), away = vec3_sub(of->shape.position, f->origin),
                aside = vec3_sub(away, vec3_scale(f->axis, vec3_dot(away, f->axis)));
     if (vec3_dot(way, f->axis) < 1.0 - OFF_AXIS ||
-        vec3_length(aside) > OFF_AXIS * (of->shape.diameter + vec3_length(away)))
+        vec3_length(aside) > OFF_AXIS * (size_of(of) * of->shape.diameter + vec3_length(away)))
         return refuse(f, of, "give the name of one system, or put its solids on one axis, with the same rotation",
                       "is not on the axis of the first lens");
     return STATUS_OK;
@@ -100,8 +106,11 @@ static status add_lens(lens_finder *f, const solid *of, size_t order)
     if (f->count >= LENS_SURFACES_MAX / 2)
         return refuse(f, of, "give the name of one system", "is one lens too many");
     TRY(check_axis(f, of));
+    const vec3 k = of->shape.scale;
+    if (!(k.x > 0.0) || k.x != k.y || k.x != k.z)
+        return refuse(f, of, "scale it by 3 equal numbers above 0", "is not scaled evenly, or mirrored");
     const double y = along(f, of);
-    f->lens[f->count++] = (placed_lens){of, y, y + of->shape.thickness, order};
+    f->lens[f->count++] = (placed_lens){of, y, y + size_of(of) * of->shape.thickness, order};
     return STATUS_OK;
 }
 
@@ -171,17 +180,19 @@ static status medium_of(const lens_finder *f, const solid *of, lens_medium *out)
 static lens_surface side_of(const lens_finder *f, const placed_lens *l, int side)
 {
     const solid *of = l->of;
-    lens_surface s = {.radius = get(f, of, "radius_%d", side),
+    const double k = size_of(of);
+    double power = k * k * k;
+    lens_surface s = {.radius = k * get(f, of, "radius_%d", side),
                       .conic = get(f, of, "conic_%d", side),
-                      .diameter = get(f, of, "diameter_%d", side),
+                      .diameter = k * get(f, of, "diameter_%d", side),
                       .medium = {.kind = LENS_AIR, .glass_file = -1}};
-    for (int i = 0; i < LENS_EVEN_TERMS; i++) {
+    for (int i = 0; i < LENS_EVEN_TERMS; i++, power *= k * k) {
         char row[16];
         snprintf(row, sizeof row, "a%d_%%d", 4 + 2 * i);
-        s.even[i] = get(f, of, row, side);
+        s.even[i] = get(f, of, row, side) / power;
     }
     if (s.diameter == 0.0)
-        s.diameter = of->shape.diameter;
+        s.diameter = k * of->shape.diameter;
     return s;
 }
 
@@ -246,8 +257,8 @@ static void insert_stop(lens_prescription *p, size_t at, double y, double y_befo
 static void read_stop(const lens_finder *f)
 {
     lens_prescription *p = f->p;
-    const double half = f->stop->shape.inner_radius, height = f->stop->shape.height, from = along(f, f->stop),
-                 rounding = 1e-9 * half;
+    const double k = size_of(f->stop), half = k * f->stop->shape.inner_radius, height = k * f->stop->shape.height,
+                 from = along(f, f->stop), rounding = 1e-9 * half;
     double y = 0.0, y_before = 0.0;
     size_t after = 0; /* the first surface beyond the plane */
     p->aperture_kind = LENS_APERTURE_STOP;
@@ -310,7 +321,7 @@ static void read_beams(const lens_finder *f)
 /* Where the first surface of the prescription is, which may be the stop before the first lens. */
 static lens_placement placement_of(const lens_finder *f)
 {
-    const double stop_y = f->stop ? along(f, f->stop) + 0.5 * f->stop->shape.height : INFINITY;
+    const double stop_y = f->stop ? along(f, f->stop) + 0.5 * size_of(f->stop) * f->stop->shape.height : INFINITY;
     return (lens_placement){.name = f->stop ? f->stop->name : NULL,
                             .position = vec3_add(f->origin, vec3_scale(f->axis, fmin(stop_y, f->lens[0].y_1))),
                             .rotation_deg = f->lens[0].of->shape.rotation_deg,

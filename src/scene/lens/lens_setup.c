@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define SYSTEM "objective"
+
 /* --- the scene --- */
 
 static double rounded(double x, int digits)
@@ -29,6 +31,7 @@ typedef struct setup {
     double object;   /* half height of the object */
     double image;    /* half height of the image */
     double cone;     /* radius of the camera's aperture */
+    double leader;   /* height of the first element */
 } setup;
 
 static void set_render(setup *u)
@@ -135,10 +138,13 @@ static void add_field_beam(setup *u, const char *name, size_t i)
     const double reach = p->object_distance + pupil,
                  slope_x = angles ? tan(p->field[i].x * rad) : -p->field[i].x / reach,
                  slope_y = angles ? tan(p->field[i].y * rad) : -p->field[i].y / reach;
-    /* towards the centre of the entrance pupil; +x and +y of the prescription are -x and +y here */
+    /* towards the centre of the entrance pupil, in the frame of the first element: +y along the light, fields of +y
+     * towards -z */
     lens_put(t, name, "kind", "bundle");
-    lens_put(t, name, "direction", "%.17g,%.17g,1", slope_x, slope_y);
-    lens_put(t, name, "position", "%.17g,%.17g,%.17g", slope_x * (start - pupil), slope_y * (start - pupil), start);
+    lens_put(t, name, "follows", "%s", SYSTEM);
+    lens_put(t, name, "direction", "%.17g,1,%.17g", slope_x + 0.0, 0.0 - slope_y);
+    lens_put(t, name, "position", "%.17g,%.17g,%.17g", slope_x * (start - pupil) + 0.0, start - u->leader,
+             0.0 - slope_y * (start - pupil));
     lens_put_number(t, name, "width", u->f.pupil_diameter);
     lens_put(t, name, "rays", "61");
     lens_put(t, name, "branches", "off");
@@ -150,8 +156,10 @@ static void add_field_beam(setup *u, const char *name, size_t i)
 static void add_beams(setup *u)
 {
     char name[32];
+    const int leader = scene_find_solid(u->t.s, SYSTEM);
+    u->leader = leader >= 0 ? u->t.s->solids[leader].shape.position.z : 0.0;
     for (size_t i = 0; i < u->p->field_count; i++) {
-        snprintf(name, sizeof name, "objective-field-%zu", i + 1);
+        snprintf(name, sizeof name, SYSTEM "-field-%zu", i + 1);
         THEN(u->t.code, scene_add(u->t.s, PARAM_BEAM, name, NULL, u->t.why));
         add_field_beam(u, name, i);
     }
@@ -188,7 +196,7 @@ status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses
                             "give the aperture (pupil, f_number or the diameter of the stop) of a system with an image",
                             "the system has no image, or no aperture");
     THEN(u.t.code, scene_set_title(*out, p->title[0] ? p->title : "A lens", why));
-    const lens_placement at = {.name = "objective",
+    const lens_placement at = {.name = SYSTEM,
                                .rotation_deg = {90.0, 0.0, 0.0},
                                .scale = 1.0,
                                .mount = true,
@@ -197,10 +205,10 @@ status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses
     set_render(&u);
     set_camera(&u);
     add_object(&u);
-    add_beams(&u);
     THEN(u.t.code, lens_add_to_scene(*out, p, &at, why));
+    add_beams(&u);
     add_board(&u);
-    lens_put(&u.t, "objective-screen", "visible", "off"); /* the camera is behind it */
+    lens_put(&u.t, SYSTEM "-screen", "visible", "off"); /* the camera is behind it */
     if (u.t.code != STATUS_OK) {
         scene_destroy(*out);
         *out = NULL;

@@ -144,8 +144,21 @@ static status check_lines(const scene *s, diagnostic *why)
                           "%d lights and beams have the spectrum line; a scene can have %d", count, LINE_LAMPS_MAX);
 }
 
-static status check_beam(const beam *b, diagnostic *why)
+static status check_beam_leader(const scene *s, const beam *b, diagnostic *why)
 {
+    char remedy[SCENE_NAME_MAX + 80];
+    if (b->follows[0] && scene_find_solid(s, b->follows) < 0)
+        return diagnose(why, STATUS_BAD_INPUT, object_remedy(s, PARAM_SOLID, b->follows, remedy, sizeof remedy),
+                        "%.80s follows '%.80s', but no solid has that name", b->name, b->follows);
+    return isfinite(beam_scale(s, b))
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "scale that solid by 3 equal numbers",
+                          "%.80s follows %.80s, which is not scaled evenly", b->name, b->follows);
+}
+
+static status check_beam(const scene *s, const beam *b, diagnostic *why)
+{
+    TRY(check_beam_leader(s, b, why));
     const vec3 axis = beam_axis(b);
     if (!(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target, or set its direction",
@@ -485,6 +498,11 @@ static status check_leader(const scene *s, const solid *owner, diagnostic *why)
     if (&s->solids[at] >= owner)
         return diagnose(why, STATUS_BAD_INPUT, "move the solid that is followed before those that follow it",
                         "%.80s follows %.80s, which does not come before it", owner->name, owner->follows);
+    const vec3 k = s->solids[at].scale, turn = owner->rotation_deg;
+    if ((k.x != k.y || k.x != k.z) && (turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "scale it by 3 equal numbers, or set the rotation to 0,0,0",
+                        "%.80s is rotated in the frame of %.80s, which is not scaled evenly", owner->name,
+                        owner->follows);
     if (!solid_follows(&s->solids[at]))
         return STATUS_OK;
     snprintf(remedy, sizeof remedy, "let it follow %s", s->solids[at].follows);
@@ -574,7 +592,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_TEXTURE: return check_texture(&s->textures[index], why);
     case PARAM_DATA: return check_data(&s->data[index], why);
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
-    case PARAM_BEAM: return check_beam(&s->beams[index], why);
+    case PARAM_BEAM: return check_beam(s, &s->beams[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
     case PARAM_MATERIAL: /* all else is checked with each solid that has it */
         return check_data_of(s, &s->materials[index].value, s->materials[index].name, why);

@@ -77,18 +77,27 @@ typedef enum beam_pattern { PATTERN_SPIRAL, PATTERN_RINGS, PATTERN_SQUARE, PATTE
  * width. */
 typedef enum beam_profile { BEAM_UNIFORM, BEAM_GAUSSIAN } beam_profile;
 
+typedef struct beam_place {
+    vec3 position, target;
+    vec3 direction;     /* used instead of the target unless it is zero */
+    vec3 normal;        /* of the plane of a fan or sheet; zero: as in `cuvette fan` */
+    double width;       /* of a sheet, diameter of a bundle */
+    double field_width; /* between the outermost field points of rays from a point */
+} beam_place;
+
 typedef struct beam {
     char *name;
-    int64_t kind; /* beam_kind */
-    vec3 position, target;
-    vec3 direction; /* used instead of the target unless it is zero */
-    vec3 normal;    /* of the plane of a fan or sheet; zero: as in `cuvette fan` */
+    int64_t kind;                             /* beam_kind */
+    char follows[SCENE_NAME_MAX + 1];         /* name of a solid with which it moves, turns and is scaled; "": none */
+    beam_place own;                           /* in that solid's frame, as the parameters have it */
+    vec3 position, target, direction, normal; /* in the world, as in beam_place */
+    double width, field_width;
     int64_t rays;
     int64_t pattern;                   /* beam_pattern */
     int64_t field_columns, field_rows; /* field points: each has all rays */
-    double field_deg, field_width; /* between the outermost field points: of parallel rays, and of rays from a point */
-    double angle_deg, width; /* full angle of a pencil or fan; width of a sheet, diameter of a bundle, scene units */
-    int64_t white;           /* 1: `wavelengths` wavelengths from BEAM_LOW_NM to BEAM_HIGH_NM instead of lambda_nm */
+    double field_deg;                  /* between the outermost field points of parallel rays */
+    double angle_deg;                  /* full angle of a pencil or fan */
+    int64_t white; /* 1: `wavelengths` wavelengths from BEAM_LOW_NM to BEAM_HIGH_NM instead of lambda_nm */
     double lambda_nm;
     int64_t wavelengths;
     double power;     /* sum over all rays and field points, at their starts */

@@ -30,9 +30,10 @@ const char *shape_name(shape_kind kind)
 
 bool solid_has(const solid *owner, const param *row)
 {
-    if (row->group == PARAM_SOLID && !row->by_shape &&
-        row->type == PARAM_VECTOR) /* a place: one's own, or from another */
-        return solid_follows(owner) == (row->offset == offsetof(solid, offset));
+    if (row->group == PARAM_SOLID && row->offset == offsetof(solid, offset)) /* a place: one's own, or from another */
+        return solid_follows(owner);
+    if (row->group == PARAM_SOLID && row->offset == offsetof(solid, shape.position))
+        return !solid_follows(owner);
     return row->group == PARAM_MATERIAL || !row->by_shape || shape_has(shape_of(&owner->shape), row->name);
 }
 
@@ -328,6 +329,32 @@ static bool has_loaded_data(const scene *s)
     return any;
 }
 
+/* Places the object, and all that follow, after a parameter that can be a place. One that no longer follows another
+ * keeps its place. */
+static void place_again(scene *s, const param_place *at)
+{
+    const param *row = at->row;
+    const bool word = row->type == PARAM_WORD;
+    if (row->group == PARAM_BEAM && (word || row->type == PARAM_VECTOR || row->type == PARAM_REAL)) {
+        beam *b = &s->beams[at->index];
+        s->has_followers |= b->follows[0] != 0;
+        if (!b->follows[0] && word)
+            b->own = (beam_place){b->position, b->target, b->direction, b->normal, b->width, b->field_width};
+        else if (!b->follows[0])
+            beam_stand(b);
+        scene_follow_leaders(s);
+    } else if (row->group == PARAM_SOLID && (word || row->type == PARAM_VECTOR)) {
+        solid *owner = &s->solids[at->index];
+        s->has_followers |= solid_follows(owner);
+        if (row->offset == offsetof(solid, follows) && !solid_follows(owner))
+            owner->rotation_deg = owner->shape.rotation_deg, owner->scale = owner->shape.scale;
+        else if (!solid_follows(owner) &&
+                 (row->offset == offsetof(solid, rotation_deg) || row->offset == offsetof(solid, scale)))
+            solid_stand(owner);
+        scene_follow_leaders(s);
+    }
+}
+
 static void store(scene *s, const param_place *at, param_value value)
 {
     forget_medium(s, at);
@@ -344,10 +371,7 @@ static void store(scene *s, const param_place *at, param_value value)
     for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
-    if (row->group == PARAM_SOLID && (row->type == PARAM_VECTOR || row->type == PARAM_WORD)) {
-        s->has_followers |= solid_follows(&s->solids[at->index]);
-        scene_follow_solids(s);
-    }
+    place_again(s, at);
     if (at->object_group == PARAM_DATA || (names_data(row) && has_loaded_data(s)))
         scene_follow_data(s);
 }

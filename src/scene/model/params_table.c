@@ -85,7 +85,7 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define BEAM_CHOICE(field, words, fallback, meaning) \
     ROW(PARAM_BEAM, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, BEAM(field))
 #define BEAM_VECTOR(field, unit, fallback, meaning) \
-    ROW(PARAM_BEAM, #field, PARAM_VECTOR, unit, -FAR, FAR, false, fallback, meaning, NULL, BEAM(field))
+    ROW(PARAM_BEAM, #field, PARAM_VECTOR, unit, -FAR, FAR, false, fallback, meaning, NULL, BEAM(own.field))
 /* For some shapes: see geometry/shapes/shape.h. */
 #define SHAPE(field) OF(solid, field), .by_shape = true
 
@@ -437,6 +437,10 @@ static const param table[] = {
         kind, beam_words, "pencil",
         "rays from one point in a cone (pencil) or in a plane (fan), or parallel rays in a plane (sheet) or over "
         "a disc (bundle)"),
+    {PARAM_BEAM, "follows", PARAM_WORD, "", 0, 0, false, "",
+     "name of a solid with which the beam moves, turns and is scaled: its position, target, direction, normal and "
+     "widths are then in that solid's frame",
+     NULL, BEAM(follows), .names = "solid"},
     BEAM_VECTOR(position, "scene units", "-3,1,0", "start of the axis"),
     BEAM_VECTOR(target, "scene units", "0,1,0", "point on the axis"),
     BEAM_VECTOR(direction, "", "0,0,0", "direction of the axis, of any length; 0,0,0: towards the target"),
@@ -444,7 +448,8 @@ static const param table[] = {
                 "fan and sheet: normal of the plane of the rays; 0,0,0: up for a horizontal beam, else horizontal"),
     BEAM_INTEGER(rays, 1, BEAM_RAYS_MAX, "1", "number of rays of each wavelength and field point; 1: only the axis"),
     BEAM_REAL(angle_deg, "deg", 0, 179, "10", "pencil and fan: full angle between the outermost rays"),
-    BEAM_REAL(width, "scene units", 0, FAR, "0.5", "sheet and bundle: distance between the outermost rays"),
+    ROW(PARAM_BEAM, "width", PARAM_REAL, "scene units", 0, FAR, false, "0.5",
+        "sheet and bundle: distance between the outermost rays", NULL, BEAM(own.width)),
     ROW(PARAM_BEAM, "pattern", PARAM_CHOICE, "", 0, 0, false, "spiral",
         "places of the rays of a pencil and a bundle, each in an equal part of the cone or disc: a spiral; the largest "
         "number of full rings (1, 7, 19, 37, 61, ... rays) or the largest square grid that `rays` suffices for; or the "
@@ -459,7 +464,7 @@ static const param table[] = {
         BEAM_SHOWN(field_deg)),
     ROW(PARAM_BEAM, "field_width", PARAM_REAL, "scene units", 0, FAR, false, "1",
         "pencil and fan: distance between the outermost field points, in both directions", NULL,
-        BEAM_SHOWN(field_width)),
+        BEAM_SHOWN(own.field_width)),
     BEAM_CHOICE(white, off_on, "off", "on: white light, as several wavelengths; off: only lambda_nm"),
     BEAM_REAL(lambda_nm, "nm", 200, 2000, "587.5618", "wavelength in vacuum; the default is the d line"),
     BEAM_INTEGER(wavelengths, 1, 64, "7", "wavelengths of white light, evenly from 400 to 700 nm, of equal power"),
@@ -592,8 +597,9 @@ static const param table[] = {
 
     /* Before the place, which a solid that follows another one does not have. */
     {PARAM_SOLID, "follows", PARAM_WORD, "", 0, 0, false, "",
-     "name of an earlier solid with which this one moves and turns, instead of a position and a rotation", NULL,
-     OF(solid, follows), .names = "solid"},
+     "name of an earlier solid with which this one moves, turns and is scaled: instead of a position it has an offset, "
+     "and its rotation and scale are in that solid's frame",
+     NULL, OF(solid, follows), .names = "solid"},
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
      "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; vertex of side 1 of a "
      "lens; "
@@ -601,9 +607,9 @@ static const param table[] = {
      NULL, OF(solid, shape.position)},
     {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0",
      "rotation about the fixed axes x, then y, then z; counter-clockwise for an eye that looks along the axis", NULL,
-     OF(solid, shape.rotation_deg)},
+     OF(solid, rotation_deg)},
     VECTOR(PARAM_SOLID, solid, offset, "0,0,0",
-           "with follows: from that solid's position to this one's, along that solid's own axes"),
+           "with follows: from that solid's position to this one's, along that solid's own axes and in its scale"),
     LENGTH(radius, "1", "radius; cup: outer; cone: base; prism: circumradius; torus: major radius"),
     LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
@@ -689,7 +695,7 @@ static const param table[] = {
      "of the solid, about its position and along its own axes, with its textures; of a solid at points: of the points; "
      "a "
      "negative number mirrors",
-     NULL, SHAPE(shape.scale), .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},
+     NULL, SHAPE(scale), .not_zero = true, .slider = {0.001, 2.5, 0.001, 0}},
     {PARAM_SOLID, "copies", PARAM_VECTOR, "", 1, 100000, false, "1,1,1",
      "mesh: number of copies along each of its own axes", NULL, SHAPE(shape.copies)},
     {PARAM_SOLID, "spacing", PARAM_VECTOR, "scene units", -FAR, FAR, false, "1,1,1",

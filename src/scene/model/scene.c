@@ -8,6 +8,7 @@
 #include "scene/model/open.h"
 #include "scene/model/params.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -213,17 +214,75 @@ void scene_follow_data(scene *s)
         s->lights[i].emission_data = data_named(s, s->lights[i].spectrum_data);
 }
 
-void scene_follow_solids(scene *s)
+void solid_stand(solid *owner)
+{
+    owner->shape.rotation_deg = owner->rotation_deg;
+    owner->shape.scale = owner->scale;
+}
+
+void beam_stand(beam *b)
+{
+    const beam_place *own = &b->own;
+    b->position = own->position, b->target = own->target, b->direction = own->direction, b->normal = own->normal;
+    b->width = own->width, b->field_width = own->field_width;
+}
+
+static vec3 passed_scale(const solid *leader)
+{
+    return shape_of(&leader->shape)->triangles || leader->points[0] ? vec3_make(1.0, 1.0, 1.0) : leader->shape.scale;
+}
+
+static vec3 times(vec3 a, vec3 b)
+{
+    return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+/* A point in a solid's frame, in the world. */
+static vec3 led_point(const solid *leader, vec3 local)
+{
+    const mat3 turn = rotation_from_deg(leader->shape.rotation_deg);
+    return vec3_add(leader->shape.position, mat3_apply(turn, times(passed_scale(leader), local)));
+}
+
+static void solid_follow(solid *owner, const solid *leader)
+{
+    const vec3 own = owner->rotation_deg;
+    owner->shape.position = led_point(leader, owner->offset);
+    owner->shape.rotation_deg = leader->shape.rotation_deg;
+    if (own.x != 0.0 || own.y != 0.0 || own.z != 0.0)
+        owner->shape.rotation_deg =
+            rotation_to_deg(mat3_product(rotation_from_deg(leader->shape.rotation_deg), rotation_from_deg(own)));
+    owner->shape.scale = times(passed_scale(leader), owner->scale);
+}
+
+static void beam_follow(beam *b, const solid *leader)
+{
+    const mat3 turn = rotation_from_deg(leader->shape.rotation_deg);
+    const double k = passed_scale(leader).x;
+    b->position = led_point(leader, b->own.position), b->target = led_point(leader, b->own.target);
+    b->direction = mat3_apply(turn, vec3_scale(b->own.direction, k));
+    b->normal = mat3_apply(turn, b->own.normal);
+    b->width = fabs(k) * b->own.width, b->field_width = fabs(k) * b->own.field_width;
+}
+
+double beam_scale(const scene *s, const beam *b)
+{
+    const int at = b->follows[0] ? scene_find_solid(s, b->follows) : -1;
+    const vec3 k = at < 0 ? vec3_make(1.0, 1.0, 1.0) : passed_scale(&s->solids[at]);
+    return k.x == k.y && k.x == k.z ? k.x : NAN;
+}
+
+void scene_follow_leaders(scene *s)
 {
     for (size_t i = 0; s->has_followers && i < s->solid_count; i++) {
-        solid *owner = &s->solids[i];
-        const int at = solid_follows(owner) ? scene_find_solid(s, owner->follows) : -1;
-        if (at < 0 || (size_t)at == i)
-            continue;
-        const solid_shape *leader = &s->solids[at].shape;
-        const mat3 turn = rotation_from_deg(leader->rotation_deg);
-        owner->shape.position = vec3_add(leader->position, mat3_apply(turn, owner->offset));
-        owner->shape.rotation_deg = leader->rotation_deg;
+        const int at = solid_follows(&s->solids[i]) ? scene_find_solid(s, s->solids[i].follows) : -1;
+        if (at >= 0 && (size_t)at != i)
+            solid_follow(&s->solids[i], &s->solids[at]);
+    }
+    for (size_t i = 0; s->has_followers && i < s->beam_count; i++) {
+        const int at = s->beams[i].follows[0] ? scene_find_solid(s, s->beams[i].follows) : -1;
+        if (at >= 0)
+            beam_follow(&s->beams[i], &s->solids[at]);
     }
 }
 

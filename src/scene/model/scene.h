@@ -32,7 +32,7 @@ struct scene {
     size_t beam_count;
     solid *solids;
     size_t solid_count;
-    bool has_followers; /* a solid follows another one, or has done so (scene_follow_solids) */
+    bool has_followers; /* something follows a solid, or has done so (scene_follow_leaders) */
     solid *new_solid;   /* with all defaults and without a name; NULL until the first solid is added */
     name_tally names;   /* of meshes, textures, data, materials, lights, beams and solids */
     load_limits limits; /* none by default; set by scene_limit */
@@ -54,13 +54,19 @@ const texture_entry *scene_find_texture(const scene *s, const char *name);
  * entry changes. */
 void scene_follow_data(scene *s);
 
-/* Whether a solid has its place from another one, and places those that have: position and rotation. Called when a
- * place, a name or a leader changes. */
+/* Whether a solid has its place from another one, and places those solids and beams that have: position, rotation and
+ * scale. The scale of a mesh or of points, which is their own size, is not passed on. Called when a place, a name or a
+ * leader changes. */
 static inline bool solid_follows(const solid *owner)
 {
     return owner->follows[0] != 0;
 }
-void scene_follow_solids(scene *s);
+void scene_follow_leaders(scene *s);
+/* Gives a solid or a beam that follows none the place that its parameters have. */
+void solid_stand(solid *owner);
+void beam_stand(beam *b);
+/* The factor by which a beam's place is scaled, 1 if it follows none; NaN if its solid is not scaled evenly. */
+double beam_scale(const scene *s, const beam *b);
 
 /* The first light of kind sun, or NULL. */
 const light *scene_sun(const scene *s);

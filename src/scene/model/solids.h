@@ -25,8 +25,10 @@ typedef struct solid {
     int64_t priority;                 /* the highest has precedence where solids overlap; among equals the first in the
                                       scene */
     int64_t visible;                  /* 0: omitted from the scene */
-    char follows[SCENE_NAME_MAX + 1]; /* name of an earlier solid, with which this one moves and turns; "": none */
+    char follows[SCENE_NAME_MAX + 1]; /* name of an earlier solid, with which this one moves, turns and is scaled; "":
+                                         none */
     vec3 offset;                      /* from that solid's position, in its frame */
+    vec3 rotation_deg, scale;         /* its own, in that solid's frame; the shape has those in the world */
     char mesh[SCENE_NAME_MAX + 1];    /* name of the mesh, for shape mesh */
     char points[SCENE_NAME_MAX + 1];  /* name of the mesh at whose vertices the solid is repeated; "" for one solid */
     int64_t shading;                  /* shading_rule, for meshes */

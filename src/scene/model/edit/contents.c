@@ -122,19 +122,21 @@ static status apply(const group_edit *e, scene *s, const object_list *of, diagno
     return code;
 }
 
-/* Whether the solid moves and turns with another one of the scene. */
+/* Whether the object moves, turns and is scaled with a solid of the scene. */
 static bool has_leader(const scene *s, const char *name)
 {
-    const int at = scene_find_solid(s, name);
-    return at >= 0 && solid_follows(&s->solids[at]);
+    const int at = scene_find_solid(s, name), rays = object_find(s, PARAM_BEAM, name);
+    return (at >= 0 && solid_follows(&s->solids[at])) || (rays >= 0 && s->beams[rays].follows[0]);
+}
+
+static bool is_led(const scene *s, const char *name, vec3 from_first)
+{
+    return has_leader(s, name) && (from_first.x != 0.0 || from_first.y != 0.0 || from_first.z != 0.0);
 }
 
 static status move_one(const group_edit *e, scene *s, const char *name, vec3 from_first, diagnostic *why)
 {
-    const bool is_first = from_first.x == 0.0 && from_first.y == 0.0 && from_first.z == 0.0;
-    if (has_leader(s, name) && !is_first)
-        return STATUS_OK;
-    return scene_move(s, name, e->by, why);
+    return is_led(s, name, from_first) ? STATUS_OK : scene_move(s, name, e->by, why);
 }
 
 /* Rotates an object about the first one; a point light has no direction, and only moves. */
@@ -152,6 +154,8 @@ static status turn_one(const group_edit *e, scene *s, const char *name, vec3 fro
 
 static status scale_one(const group_edit *e, scene *s, const char *name, vec3 from_first, diagnostic *why)
 {
+    if (is_led(s, name, from_first))
+        return STATUS_OK;
     TRY(scene_move(s, name, vec3_scale(from_first, e->factor - 1.0), why));
     return scene_scale(s, name, e->factor, why);
 }

@@ -31,6 +31,7 @@ static status set_solid_defaults(scene *s, solid *new, diagnostic *why)
         TRY(param_set_defaults(PARAM_SOLID, s->new_solid, why));
         TRY(param_set_defaults(PARAM_MATERIAL, &s->new_solid->surface, why));
         s->new_solid->material_index = -1;
+        solid_stand(s->new_solid);
     }
     char *name = new->name;
     *new = *s->new_solid;
@@ -50,6 +51,8 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
                                        : param_set_defaults(group, object_values(s, group, at), why);
     if (group == PARAM_SOLID)
         s->solids[at].shape.kind = shape;
+    if (group == PARAM_BEAM)
+        beam_stand(&s->beams[at]);
     /* Counting all solids for each new one is slow: few bounded solids cannot exceed the limits. */
     const shape_rule *rule = shape_of_kind(shape);
     if (group != PARAM_SOLID || rule->unbounded || rule->triangles || s->solid_count > SCENE_PRIMITIVES_MAX / 3)
@@ -265,6 +268,10 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
             if (strcmp(s->solids[i].follows, name) == 0)
                 return diagnose(why, STATUS_BAD_INPUT, "first set its follows to another solid, or remove it",
                                 "%.80s follows %.80s", s->solids[i].name, name);
+        for (size_t i = 0; s->has_followers && i < s->beam_count; i++)
+            if (strcmp(s->beams[i].follows, name) == 0)
+                return diagnose(why, STATUS_BAD_INPUT, "first set its follows to another solid, or remove it",
+                                "%.80s follows %.80s", s->beams[i].name, name);
         object_remove(s, at.object_group, at.index);
         return STATUS_OK;
     case PARAM_LIGHT:
@@ -307,6 +314,9 @@ static void follow_name(scene *s, const param_place *at, const char *from, const
             if (strcmp(owner->ends[k], from) == 0)
                 strcpy(owner->ends[k], to);
     }
+    for (size_t i = 0; at->object_group == PARAM_SOLID && i < s->beam_count; i++)
+        if (strcmp(s->beams[i].follows, from) == 0)
+            strcpy(s->beams[i].follows, to);
     for (size_t i = 0; at->object_group == PARAM_DATA && i < s->material_count; i++)
         rename_data(&s->materials[i].value, from, to);
     for (size_t i = 0; at->object_group == PARAM_DATA && i < s->light_count; i++)

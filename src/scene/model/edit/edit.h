@@ -110,8 +110,5 @@ status edit_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);
 /* Fails for angles that are not finite or too large; name is used in the message. */
 status edit_check_angles(const char *name, vec3 degrees, diagnostic *why);
 
-/* Rounds an angle from an arc tangent, whose error is below 1e-12 degrees, to a nearby round number. */
-double edit_settle_deg(double degrees);
-
 /* Undoes a failed edit of values: restores those of the clone that was made before the edit. */
 void edit_restore(scene *s, const scene *before);

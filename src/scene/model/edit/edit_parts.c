@@ -53,6 +53,9 @@ void edit_restore(scene *s, const scene *before)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         s->solids[i].shape = before->solids[i].shape;
+        s->solids[i].offset = before->solids[i].offset;
+        s->solids[i].rotation_deg = before->solids[i].rotation_deg;
+        s->solids[i].scale = before->solids[i].scale;
         s->solids[i].surface = before->solids[i].surface;
     }
     for (size_t i = 0; i < s->light_count; i++) {
@@ -105,7 +108,8 @@ static status move_parts(parts_edit *e)
     for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = edit_move(e->s, e->s->lights[i].name, e->by, e->why);
     for (size_t i = 0; i < e->s->beam_count && e->parts.beams && code == STATUS_OK; i++)
-        code = edit_move(e->s, e->s->beams[i].name, e->by, e->why);
+        if (!e->s->beams[i].follows[0] || !e->parts.solids)
+            code = edit_move(e->s, e->s->beams[i].name, e->by, e->why);
     return e->parts.camera && code == STATUS_OK ? edit_move(e->s, "camera", e->by, e->why) : code;
 }
 
@@ -133,6 +137,8 @@ static status turn_light(parts_edit *e, const light *one)
 static status turn_beam(parts_edit *e, const beam *one)
 {
     const vec3 target = one->target, direction = one->direction, normal = one->normal;
+    if (one->follows[0] && e->parts.solids) /* it turns with its leader */
+        return STATUS_OK;
     TRY(turn_point(e, one->name, "position", one->position));
     TRY(turn_point(e, one->name, "target", target));
     TRY(turn_point(e, one->name, "direction", direction));
@@ -154,7 +160,7 @@ static status turn_camera(parts_edit *e)
     THEN(code, turn_point(e, "camera", "position", eye));
     if (code == STATUS_OK) {
         const camera_frame level = camera_frame_level(s);
-        const double roll = edit_settle_deg(elementary_atan2_deg(vec3_dot(up, level.right), vec3_dot(up, level.up)));
+        const double roll = settled_deg(elementary_atan2_deg(vec3_dot(up, level.right), vec3_dot(up, level.up)));
         s->camera.roll_deg = fabs(roll - s->camera.roll_deg) < 1e-12 ? s->camera.roll_deg : roll + 0.0;
     }
     return code;
@@ -215,11 +221,21 @@ static int scaling_power(const parts_edit *e, const char *name, const param *row
     return is_power(e, name, row) ? 2 : length_power(row);
 }
 
+/* The name of the solid that an object follows; "" for none. */
+static const char *leader_of(const scene *s, const param_place *at)
+{
+    return at->object_group == PARAM_SOLID  ? s->solids[at->index].follows
+           : at->object_group == PARAM_BEAM ? s->beams[at->index].follows
+                                            : "";
+}
+
 static bool is_scaled(const parts_edit *e, const char *name, const param *row)
 {
     param_place at;
     if (scaling_power(e, name, row) == 0 || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
+    if (e->only && strcmp(row->name, "tint_distance") != 0 && strcmp(leader_of(e->s, &at), e->only) == 0)
+        return true;
     if (e->only) { /* one object keeps its place and its material, and render.unit_m stays */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
                strcmp(row->name, "position") != 0 && strcmp(row->name, "offset") != 0 &&

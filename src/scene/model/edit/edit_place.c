@@ -2,6 +2,7 @@
 #include "base/elementary.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "geometry/shapes/shape.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 
@@ -61,13 +62,22 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
     return code;
 }
 
-/* The target of a beam moves as well, so that its direction stays. */
-static status move_beam(scene *s, size_t index, vec3 delta, diagnostic *why)
+/* The rotation of the solid that a beam follows. */
+static mat3 beam_turn(const scene *s, const beam *b)
+{
+    const int at = b->follows[0] ? scene_find_solid(s, b->follows) : -1;
+    return rotation_from_deg(at < 0 ? vec3_make(0.0, 0.0, 0.0) : s->solids[at].shape.rotation_deg);
+}
+
+/* The target of a beam moves as well, so that its direction stays. One that follows a solid moves in its frame. */
+static status move_beam(scene *s, size_t index, vec3 by, diagnostic *why)
 {
     beam *b = &s->beams[index];
     const beam before = *b;
-    status code = edit_set_vector(s, b->name, "position", vec3_add(before.position, delta), why);
-    THEN(code, edit_set_vector(s, b->name, "target", vec3_add(before.target, delta), why));
+    const vec3 delta =
+        b->follows[0] ? vec3_scale(mat3_apply_transposed(beam_turn(s, b), by), 1.0 / beam_scale(s, b)) : by;
+    status code = edit_set_vector(s, b->name, "position", vec3_add(before.own.position, delta), why);
+    THEN(code, edit_set_vector(s, b->name, "target", vec3_add(before.own.target, delta), why));
     if (code != STATUS_OK)
         *b = before;
     return code;
@@ -78,7 +88,11 @@ static status move_solid(scene *s, const solid *one, vec3 delta, diagnostic *why
 {
     if (!solid_follows(one))
         return edit_set_vector(s, one->name, "position", vec3_add(one->shape.position, delta), why);
-    const vec3 within = mat3_apply_transposed(rotation_from_deg(one->shape.rotation_deg), delta);
+    const solid *leader = &s->solids[scene_find_solid(s, one->follows)];
+    const bool passes = !shape_of(&leader->shape)->triangles && !leader->points[0];
+    const vec3 k = passes ? leader->shape.scale : vec3_make(1.0, 1.0, 1.0);
+    const vec3 in_frame = mat3_apply_transposed(rotation_from_deg(leader->shape.rotation_deg), delta),
+               within = vec3_make(in_frame.x / k.x, in_frame.y / k.y, in_frame.z / k.z);
     return edit_set_vector(s, one->name, "offset", vec3_add(one->offset, within), why);
 }
 
@@ -106,35 +120,6 @@ static double wrap_deg(double degrees)
     return rest > 180.0 ? rest - 360.0 : rest;
 }
 
-double edit_settle_deg(double degrees)
-{
-    double round = floor(degrees * 1e6 + 0.5) / 1e6;
-    return fabs(round - degrees) < 1e-12 ? round : degrees;
-}
-
-static mat3 product(mat3 a, mat3 b)
-{
-    mat3 c;
-    for (int i = 0; i < 3; i++)
-        c.row[i] = mat3_apply_transposed(b, a.row[i]);
-    return c;
-}
-
-/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is computed from R_z^-1 r instead of r's last row, so
- * that it compensates any choice of z when y is 90 or -90 degrees: then the local x axis is along the world's z, and x
- * and z rotate about the same line. Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive
- * rotations, Computers & Graphics 17 (1993). */
-static vec3 angles_of(mat3 r)
-{
-    const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
-    const double z = elementary_atan2_deg(r.row[1].x, r.row[0].x);
-    double sz, cz;
-    elementary_sincos_deg(z, &sz, &cz);
-    const double cos_x = cz * r.row[1].y - sz * r.row[0].y, minus_sin_x = cz * r.row[1].z - sz * r.row[0].z;
-    return vec3_make(edit_settle_deg(elementary_atan2_deg(-minus_sin_x, cos_x)),
-                     edit_settle_deg(elementary_atan2_deg(-r.row[2].x, cos_y)), edit_settle_deg(z));
-}
-
 static vec3 about(axis which, double degrees)
 {
     return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
@@ -152,7 +137,7 @@ static vec3 rotate_angles(vec3 angles, axis which, double degrees)
         return vec3_make(angles.x, wrap_deg(angles.y + degrees), 0.0);
     if (which == AXIS_X && angles.y == 0.0 && angles.z == 0.0)
         return vec3_make(wrap_deg(angles.x + degrees), 0.0, 0.0);
-    return angles_of(product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
+    return rotation_to_deg(mat3_product(rotation_from_deg(about(which, degrees)), rotation_from_deg(angles)));
 }
 
 static vec3 rotate_angles_by(vec3 angles, vec3 degrees)
@@ -175,8 +160,8 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     elementary_sincos_deg(c->yaw_deg, &sin_yaw, &cos_yaw);
     elementary_sincos_deg(c->pitch_deg, &sin_pitch, &cos_pitch);
     const vec3 d = mat3_apply(turn, vec3_make(cos_pitch * sin_yaw, sin_pitch, cos_pitch * cos_yaw));
-    c->yaw_deg = edit_settle_deg(elementary_atan2_deg(d.x, d.z));
-    c->pitch_deg = edit_settle_deg(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
+    c->yaw_deg = settled_deg(elementary_atan2_deg(d.x, d.z));
+    c->pitch_deg = settled_deg(elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z)));
     return STATUS_OK;
 }
 
@@ -187,12 +172,33 @@ static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why
     return edit_set_vector(s, l->name, "target", vec3_add(l->position, direction), why);
 }
 
+/* A rotation of the world in a frame that is turned itself. */
+static mat3 within(mat3 frame, mat3 turn)
+{
+    mat3 back = frame;
+    for (int i = 0; i < 3; i++)
+        back.row[i] = mat3_apply(frame, vec3_make(i == 0, i == 1, i == 2));
+    return mat3_product(back, mat3_product(turn, frame));
+}
+
+/* A solid that follows another one turns in its frame. */
+static status turn_solid(scene *s, const solid *one, vec3 degrees, diagnostic *why)
+{
+    const int at = solid_follows(one) ? scene_find_solid(s, one->follows) : -1;
+    if (at < 0)
+        return edit_set_vector(s, one->name, "rotation", rotate_angles_by(one->shape.rotation_deg, degrees), why);
+    const mat3 frame = rotation_from_deg(s->solids[at].shape.rotation_deg),
+               turn = mat3_product(within(frame, rotation_from_deg(degrees)), rotation_from_deg(one->rotation_deg));
+    return edit_set_vector(s, one->name, "rotation", rotation_to_deg(turn), why);
+}
+
 /* A beam's axis and plane rotate about its position. */
 static status turn_beam(scene *s, const beam *b, vec3 degrees, diagnostic *why)
 {
-    const mat3 turn = rotation_from_deg(degrees);
-    const vec3 target = vec3_add(b->position, mat3_apply(turn, vec3_sub(b->target, b->position)));
-    const vec3 direction = mat3_apply(turn, b->direction), normal = mat3_apply(turn, b->normal);
+    const mat3 turn = within(beam_turn(s, b), rotation_from_deg(degrees));
+    const beam_place *own = &b->own;
+    const vec3 target = vec3_add(own->position, mat3_apply(turn, vec3_sub(own->target, own->position)));
+    const vec3 direction = mat3_apply(turn, own->direction), normal = mat3_apply(turn, own->normal);
     status code = edit_set_vector(s, b->name, "target", target, why);
     THEN(code, edit_set_vector(s, b->name, "direction", direction, why));
     THEN(code, edit_set_vector(s, b->name, "normal", normal, why));
@@ -224,8 +230,7 @@ status edit_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     if (at.object_group == PARAM_BEAM)
         return turn_beam(s, &s->beams[at.index], degrees, why);
     if (at.object_group == PARAM_SOLID)
-        return edit_set_vector(s, name, "rotation", rotate_angles_by(s->solids[at.index].shape.rotation_deg, degrees),
-                               why);
+        return turn_solid(s, &s->solids[at.index], degrees, why);
     return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight, a beam or the camera", why);
 }
 

@@ -408,7 +408,9 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     if (placement_bounding_sphere(s, &s->solids[of], &centre, &radius))
         step = step_next_to(s, &where, &s->solids[of], centre, radius);
     TRY(copy_object(s, PARAM_SOLID, of, name, why));
-    s->solids[s->solid_count - 1].follows[0] = 0; /* the copy has its own place */
+    solid *copy = &s->solids[s->solid_count - 1]; /* has its own place */
+    copy->follows[0] = 0;
+    copy->rotation_deg = copy->shape.rotation_deg, copy->scale = copy->shape.scale;
     return scene_move(s, name, step, why);
 }
 

@@ -158,7 +158,9 @@ export function createMark(lab, choice) {
   return { at };
 
   function at() {
-    return (choice.name && lab.param(`${choice.name}.position`)?.value) || null;
+    /* the place of what follows a solid is in that solid's frame */
+    if (!choice.name || lab.param(`${choice.name}.follows`)?.value) return null;
+    return lab.param(`${choice.name}.position`)?.value || null;
   }
 
   function draw() {
