@@ -77,9 +77,12 @@ static void print_surfaces(const lens_prescription *p)
             even |= s->even[k] != 0.0;
         printf("%3zu ", i + 1);
         print_number("%14.7g ", s->radius == 0.0 ? INFINITY : s->radius);
-        printf("%s%14.7g %14.7g %10.5g  %s%s%s\n", s->radius == 0.0 ? " " : "", s->thickness, s->diameter, s->conic,
+        printf("%s%14.7g %14.7g %10.5g  %s%s%s", s->radius == 0.0 ? " " : "", s->thickness, s->diameter, s->conic,
                s->mirror ? "mirror" : lens_medium_text(&s->medium, word), even ? ", asphere" : "",
                p->stop == (int)i ? ", stop" : "");
+        if (lens_folds(s))
+            printf(", tilted %.7g, %.7g degrees", s->tilt_x_deg, s->tilt_y_deg);
+        putchar('\n');
     }
 }
 

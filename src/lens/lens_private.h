@@ -15,6 +15,9 @@ typedef struct lens_step {
     even_asphere shape;       /* the same with all coefficients */
     double n, n_after, clear; /* clear radius; INFINITY: none */
     bool mirror, silent;      /* silent: it neither bends nor reflects */
+    bool folds;               /* a flat mirror that is tilted: its normal, and the rotation to the axis after it */
+    vec3 normal;
+    mat3 turn;
 } lens_step;
 
 typedef struct lens_model {
@@ -48,8 +51,8 @@ typedef struct lens_bench {
     const lens_place *at;
     probe *p;
     ray_tree tree;
-    double around;               /* index of the surroundings, to which those of the paths are relative */
-    double R[LENS_SURFACES_MAX]; /* reflectance of each surface for the ray that was traced last */
+    double around; /* index of the surroundings, to which those of the paths are relative */
+    double R[LENS_SURFACES_MAX], T[LENS_SURFACES_MAX]; /* of each surface and its coating for the ray traced last */
 } lens_bench;
 
 status lens_bench_open(const lens_model *m, const lens_place *at, isa level, lens_bench *out, diagnostic *why);
@@ -60,8 +63,8 @@ void lens_bench_close(lens_bench *b);
 typedef enum lens_loss { LENS_PASSES, LENS_LOST, LENS_LOST_EARLY } lens_loss;
 
 typedef struct lens_ray {
-    vec3 start, launched; /* where and in which direction it began */
-    vec3 hit[LENS_SURFACES_MAX];
+    vec3 start, launched;              /* where and in which direction it began */
+    vec3 hit[LENS_SURFACES_MAX];       /* on a fold mirror: on the plane across the axis that it unfolds to */
     vec3 along[LENS_SURFACES_MAX + 1]; /* before surface i; the last is that at the image */
     vec3 image, direction;             /* on the image's surface; unit vector */
     double path, stop_x, stop_y;       /* optical path from the start to the image's surface */
@@ -70,6 +73,10 @@ typedef struct lens_ray {
 } lens_ray;
 
 status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagnostic *why);
+
+/* Reflectances of the surfaces for light that comes back along the axis from the image, without mirrors: those of
+ * absorbing coatings have two values. */
+status lens_reflectances_back(lens_bench *b, double R[LENS_SURFACES_MAX], diagnostic *why);
 
 /* --- aim.c --- */
 

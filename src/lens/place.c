@@ -136,7 +136,10 @@ static lens_step step_of(const lens_surface *from, double mm, double z, double n
                        .n_after = index,
                        .clear = from->diameter > 0.0 ? 0.5 * from->diameter * mm : INFINITY,
                        .mirror = from->mirror,
-                       .silent = !from->mirror && index == n};
+                       .silent = !from->mirror && index == n,
+                       .folds = lens_folds(from),
+                       .normal = mat3_apply(lens_tilt(from), vec3_make(0.0, 0.0, 1.0)),
+                       .turn = lens_fold(from)};
 }
 
 status lens_model_make(const lens_prescription *p, double lambda_nm, lens_model *out, diagnostic *why)

@@ -80,6 +80,10 @@ static double meet(const lens_step *s, vec3 o, vec3 d)
 
 static bool is_on(const lens_step *s, vec3 p)
 {
+    const vec3 way = vec3_sub(p, vec3_make(0.0, 0.0, s->z));
+    if (s->folds)
+        return fabs(vec3_dot(way, s->normal)) <= ON_SURFACE * (1.0 + vec3_length(way)) &&
+               vec3_length(way) <= s->clear * (1.0 + 1e-12);
     const double rho = hypot(p.x, p.y);
     double slope, bend;
     const double off = p.z - s->z - lens_sag(s, rho, &slope, &bend);
@@ -90,13 +94,14 @@ static bool is_on(const lens_step *s, vec3 p)
 
 typedef struct walk {
     const lens_bench *b;
+    lens_place at; /* of the part of the axis behind the last fold */
     size_t node;
     lens_ray *out;
 } walk;
 
 static vec3 node_origin(const walk *w)
 {
-    return local_point(w->b->at, w->b->tree.node[w->node].origin);
+    return local_point(&w->at, w->b->tree.node[w->node].origin);
 }
 
 /* Moves to the next node, which must continue as expected. */
@@ -128,16 +133,44 @@ static bool pass_silent(walk *w, int i)
     return !now->hit.opaque && go_on(w, false);
 }
 
+/* The rest of the system, as if the mirror was not tilted. */
+static void fold(walk *w, const lens_step *s)
+{
+    lens_place *at = &w->at;
+    const lens_place before = *at;
+    const mat3 *q = &s->turn;
+    const vec3 vertex = vec3_add(before.origin, vec3_scale(before.along, before.scale * s->z));
+    at->across = turned(&before, vec3_make(q->row[0].x, q->row[1].x, q->row[2].x));
+    at->up = turned(&before, vec3_make(q->row[0].y, q->row[1].y, q->row[2].y));
+    at->along = turned(&before, vec3_make(q->row[0].z, q->row[1].z, q->row[2].z));
+    at->origin = vec3_sub(vertex, vec3_scale(at->along, at->scale * s->z));
+}
+
+/* After its reflection in the unfolded plane a ray is where the tilted mirror sends it: both are the same isometry. */
+static bool pass_fold(walk *w, int i)
+{
+    const lens_step *s = &w->b->m->step[i];
+    const vec3 o = node_origin(w), d = w->out->along[i], p = local_point(&w->at, w->b->tree.node[w->node].hit.point);
+    const double t = meet(s, o, d);
+    w->out->hit[i] = vec3_add(o, vec3_scale(d, t));
+    if (!is_on(s, p) || !go_on(w, true))
+        return false;
+    fold(w, s);
+    return true;
+}
+
 static bool pass(walk *w, int i)
 {
     const lens_step *s = &w->b->m->step[i];
     const ray_node *now = &w->b->tree.node[w->node];
-    w->out->along[i] = turned_back(w->b->at, now->direction);
+    w->out->along[i] = turned_back(&w->at, now->direction);
     if (s->silent)
         return pass_silent(w, i);
     if (now->end != RAY_END_HIT)
         return false;
-    w->out->hit[i] = local_point(w->b->at, now->hit.point);
+    if (s->folds)
+        return pass_fold(w, i);
+    w->out->hit[i] = local_point(&w->at, now->hit.point);
     return is_on(s, w->out->hit[i]) && go_on(w, s->mirror);
 }
 
@@ -146,7 +179,7 @@ static bool reach_image(walk *w)
     const lens_model *m = w->b->m;
     const ray_node *now = &w->b->tree.node[w->node];
     const lens_step screen = {.c = m->image_c, .z = m->z_image, .shape = asphere_of(m->image_c, 0.0, NULL)};
-    const vec3 o = node_origin(w), d = turned_back(w->b->at, now->direction);
+    const vec3 o = node_origin(w), d = turned_back(&w->at, now->direction);
     const double t = meet(&screen, o, d);
     w->out->along[m->count] = w->out->direction = d;
     w->out->image = vec3_add(o, vec3_scale(d, t));
@@ -162,11 +195,11 @@ status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagn
     out->stop_x = out->stop_y = NAN;
     TRY(probe_path(b->p, vec3_add(b->at->origin, turned(b->at, vec3_scale(from, b->at->scale))), turned(b->at, along),
                    -1, &b->tree, why));
-    walk w = {b, 0, out};
+    walk w = {b, *b->at, 0, out};
     for (int i = 0; i < m->count; i++) {
-        b->R[i] = b->tree.node[w.node].hit.R;
-        if (m->step[i].silent)
-            b->R[i] = 0.0;
+        const ray_hit *hit = &b->tree.node[w.node].hit;
+        b->R[i] = m->step[i].silent ? 0.0 : hit->R;
+        b->T[i] = m->step[i].silent ? 1.0 : hit->T;
         const bool passes = pass(&w, i);
         if (i == m->stop && (passes || m->step[i].silent))
             out->stop_x = out->hit[i].x, out->stop_y = out->hit[i].y, out->loss = LENS_LOST;
@@ -177,5 +210,26 @@ status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagn
     out->lost_at = m->count;
     if (reach_image(&w))
         out->loss = LENS_PASSES;
+    return STATUS_OK;
+}
+
+status lens_reflectances_back(lens_bench *b, double R[LENS_SURFACES_MAX], diagnostic *why)
+{
+    const lens_model *m = b->m;
+    const double last = m->step[m->count - 1].z, start = last + 0.5 * (m->z_image - last);
+    const vec3 from = vec3_scale(b->at->along, b->at->scale * start), back = vec3_scale(b->at->along, -1.0);
+    TRY(probe_path(b->p, vec3_add(b->at->origin, from), back, -1, &b->tree, why));
+    size_t node = 0;
+    for (int i = m->count - 1; i >= 0; i--) {
+        R[i] = 0.0;
+        for (; node < b->tree.count && b->tree.node[node].end == RAY_END_HIT; node++) {
+            const ray_hit *hit = &b->tree.node[node].hit;
+            const double off = local_point(b->at, hit->point).z - m->step[i].z;
+            if (off < -ON_SURFACE)
+                break;
+            if (off <= ON_SURFACE && !m->step[i].silent)
+                R[i] = hit->R;
+        }
+    }
     return STATUS_OK;
 }

@@ -4,7 +4,8 @@
  * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
  * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns:
  * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
- * (any text but 0), hole, name; all but radius and thickness may be missing. */
+ * (any text but 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and
+ * thickness may be missing. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -17,7 +18,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LENS_BYTES_MAX = 1 << 24 };
+enum { LENS_BYTES_MAX = 1 << 24, TILT_MAX = 80 };
 
 /* --- .dat --- */
 
@@ -80,11 +81,13 @@ typedef enum lens_column {
     COLUMN_STOP,
     COLUMN_HOLE,
     COLUMN_NAME,
+    COLUMN_TILT_X,
+    COLUMN_TILT_Y,
     COLUMN_EVEN
 } lens_column;
-const char *const lens_column_words[LENS_COLUMNS] = {"radius", "thickness", "medium", "diameter", "conic", "stop",
-                                                     "hole",   "name",      "a4",     "a6",       "a8",    "a10",
-                                                     "a12",    "a14",       "a16",    "a18",      "a20"};
+const char *const lens_column_words[LENS_COLUMNS] = {
+    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name", "tilt_x", "tilt_y",
+    "a4",     "a6",        "a8",     "a10",      "a12",   "a14",  "a16",  "a18",  "a20"};
 
 const char *const lens_key_words[LENS_KEYS] = {"title",         "unit_mm",        "object_distance", "pupil",
                                                "f_number",      "object_na",      "field_deg",       "field_height",
@@ -221,6 +224,8 @@ static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS])
     TRY(cell_number(r, at, COLUMN_DIAMETER, &s->diameter));
     TRY(cell_number(r, at, COLUMN_CONIC, &s->conic));
     TRY(cell_number(r, at, COLUMN_HOLE, &s->hole));
+    TRY(cell_number(r, at, COLUMN_TILT_X, &s->tilt_x_deg));
+    TRY(cell_number(r, at, COLUMN_TILT_Y, &s->tilt_y_deg));
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
         TRY(cell_number(r, at, COLUMN_EVEN + i, &s->even[i]));
     if (s->diameter < 0.0 || s->hole < 0.0)
@@ -307,9 +312,12 @@ static status check(const lens_reader *r)
         at.line = s->line;
         if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most)
             return lens_wrong(&at, -1, "use numbers below 1e9", "a number of surface %zu is too large", i + 1);
-        if (s->mirror && s->medium.kind != LENS_AIR)
-            return lens_wrong(&at, -1, "give the mirror as the back of a solid in the scene file",
-                              "surface %zu is a mirror behind glass, which is not supported", i + 1);
+        if (lens_folds(s) && !(s->mirror && lens_is_flat(s) && s->medium.kind == LENS_AIR))
+            return lens_wrong(&at, -1, "tilt flat mirrors in air only; in a scene, any solid can be turned",
+                              "surface %zu is tilted", i + 1);
+        if (fabs(s->tilt_x_deg) > TILT_MAX || fabs(s->tilt_y_deg) > TILT_MAX)
+            return lens_wrong(&at, -1, "tilt it by at most 80 degrees", "the mirror, surface %zu, is along the axis",
+                              i + 1);
     }
     return STATUS_OK;
 }

@@ -8,6 +8,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define RING_THICKNESS 1e-4 /* of stops and mounts, of a diameter */
 
@@ -83,17 +84,82 @@ const char *lens_black(lens_builder *b)
     return name;
 }
 
+void lens_add_hole(lens_builder *b, const lens_element *e, double hole)
+{
+    object_name name, plug;
+    lens_part_name(b, name, "hole-%zu", b->count);
+    lens_part_name(b, plug, "hole");
+    const background *around = &b->t.s->background;
+    if (!lens_has(b->t.s, PARAM_MATERIAL, plug)) {
+        THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, plug, NULL, b->t.why));
+        lens_put(&b->t, plug, "transparency", "1");
+        if (surrounding_medium_name(around))
+            lens_put(&b->t, plug, "medium", "%s", surrounding_medium_name(around));
+        else
+            lens_put_number(&b->t, plug, "ior", around->ior);
+    }
+    const double glass = lens_is_air(&b->p->surface[e->front].medium) ? 0.0 : fabs(b->p->surface[e->front].thickness),
+                 length = e->y_2 - e->y_1 + glass;
+    const lens_surface *of = &b->p->surface[e->front];
+    const double sag = fabs(lens_surface_sag(of, 0.5 * e->diameter));
+    lens_add_solid(&b->t, "cylinder", name);
+    lens_put(&b->t, name, "material", "%s", plug);
+    lens_put_at(b, name, &e->leg, e->y_1 - sag - length);
+    lens_put_number(&b->t, name, "radius", 0.5 * hole * b->at->scale);
+    lens_put_number(&b->t, name, "height", (3.0 * length + 2.0 * sag) * b->at->scale);
+    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + 2 + LENS_SURFACES_MAX));
+}
+
+const char *lens_mirror_material(lens_builder *b)
+{
+    static const char name[] = "mirror";
+    if (!lens_has(b->t.s, PARAM_MATERIAL, name)) {
+        THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));
+        lens_put(&b->t, name, "medium", "aluminium");
+    }
+    return name;
+}
+
+status lens_medium_of(const scene *s, const solid *of, lens_medium *out, diagnostic *why)
+{
+    const material *m = &of->surface;
+    const background *around = &s->background;
+    const char *surroundings = surrounding_medium_name(around), *name = material_medium_name(m);
+    *out = (lens_medium){.kind = LENS_CONSTANT, .glass_file = -1};
+    if (surroundings && strcmp(surroundings, "air") != 0)
+        return diagnose(why, STATUS_BAD_INPUT, "set background.medium to air, or background.ior to 1",
+                        "the surroundings are %s", surroundings);
+    out->around = surroundings ? 0.0 : around->ior;
+    TRY(material_index_law(m, of->name, &out->law, why));
+    out->n_d = lens_tidy(lens_medium_index(out, LINE_HELIUM_D_NM));
+    const double F = lens_medium_index(out, LINE_HYDROGEN_F_NM), C = lens_medium_index(out, LINE_HYDROGEN_C_NM);
+    out->V_d = F != C ? lens_tidy((out->n_d - 1.0) / (F - C)) : 0.0;
+    if (name) {
+        out->kind = LENS_CATALOGUE;
+        snprintf(out->name, sizeof out->name, "%s", name);
+    } else if (m->medium == MEDIUM_DATA) {
+        out->kind = LENS_DATA;
+        snprintf(out->name, sizeof out->name, "%s", m->medium_data);
+        for (size_t i = 0; i < s->data_count; i++)
+            if (strcmp(s->data[i].name, m->medium_data) == 0 && s->data[i].glass[0])
+                snprintf(out->name, sizeof out->name, "%s", s->data[i].glass);
+    } else if (out->V_d > 0.0) {
+        out->kind = LENS_MODEL;
+    }
+    return STATUS_OK;
+}
+
 /* --- rings and the screen --- */
 
 /* A ring from inner to outer radius between two heights. */
-static void add_ring(lens_builder *b, const char *name, double inner, double outer, double y, double thickness,
-                     int64_t priority)
+static void add_ring(lens_builder *b, const char *name, const lens_leg *leg, double inner, double outer, double y,
+                     double thickness, int64_t priority)
 {
     const double scale = b->at->scale;
     const char *paint = lens_black(b);
     lens_add_solid(&b->t, "cup", name);
     lens_put(&b->t, name, "material", "%s", paint);
-    lens_put_at(b, name, y);
+    lens_put_at(b, name, leg, y);
     lens_put_number(&b->t, name, "radius", outer * scale);
     lens_put_number(&b->t, name, "inner_radius", inner * scale);
     lens_put_number(&b->t, name, "height", thickness * scale);
@@ -126,7 +192,7 @@ void lens_add_stop(lens_builder *b, double outer)
                                 : edge - thin;
     object_name name;
     lens_part_name(b, name, "stop");
-    add_ring(b, name, 0.5 * diameter, outer, from, thin, in_air ? 1 : LENS_SURFACES_MAX);
+    add_ring(b, name, &b->leg[p->stop], 0.5 * diameter, outer, from, thin, in_air ? 1 : LENS_SURFACES_MAX);
 }
 
 void lens_add_mounts(lens_builder *b, double outer)
@@ -143,11 +209,11 @@ void lens_add_mounts(lens_builder *b, double outer)
         low = fmin(low, y_1), high = fmax(high, y_2);
         lens_part_name(b, name, "mount-%zu", i + 1);
         if (thin > 0.0)
-            add_ring(b, name, rim, outer, 0.5 * (y_1 + y_2 - thin), thin, 0);
+            add_ring(b, name, &e->leg, rim, outer, 0.5 * (y_1 + y_2 - thin), thin, 0);
     }
     lens_part_name(b, name, "tube");
     if (high > low)
-        add_ring(b, name, outer, outer * LENS_TUBE_CLEARANCE, low, high - low, 0);
+        add_ring(b, name, &b->leg[0], outer, outer * LENS_TUBE_CLEARANCE, low, high - low, 0);
 }
 
 /* The half diagonal of the image of the outermost field. */
@@ -174,7 +240,7 @@ void lens_add_screen(lens_builder *b)
         return;
     lens_part_name(b, name, "screen");
     lens_add_solid(&b->t, "lens", name);
-    lens_put_at(b, name, f.direction > 0.0 ? y : y - thickness);
+    lens_put_at(b, name, &b->leg[p->count], f.direction > 0.0 ? y : y - thickness);
     lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_1" : "radius_2", p->image_radius * b->at->scale);
     lens_put_number(&b->t, name, f.direction > 0.0 ? "radius_2" : "radius_1", 0.0);
     lens_put_number(&b->t, name, "thickness", thickness * b->at->scale);

@@ -186,7 +186,8 @@ void lens_prescription_complete(lens_prescription *p)
         /* of wide fields, paraxial rays are farther out than the surface reaches */
         const double reach =
             s->radius == 0.0 || s->conic <= -1.0 ? INFINITY : 1.9 * fabs(s->radius) / sqrt(1.0 + s->conic);
-        const double needed = fmin(2.0 * (fabs(f.marginal.y[i]) + fabs(f.chief.y[i])), reach);
+        const double across = 2.0 * (fabs(f.marginal.y[i]) + fabs(f.chief.y[i])),
+                     needed = fmin(lens_folds(s) ? across / lens_tilt(s).row[2].z : across, reach);
         if (!(s->diameter > 0.0) && isfinite(needed))
             s->diameter = (int)i == p->stop ? f.stop_diameter : ROOM_FOR_REAL_RAYS * needed;
     }

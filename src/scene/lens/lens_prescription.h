@@ -46,8 +46,12 @@ typedef struct lens_surface {
     lens_medium medium;           /* after the surface; for a mirror that before it */
     double diameter;              /* clear diameter; 0: not stated */
     double hole;                  /* diameter of the hole in a mirror; 0: none */
-    bool mirror;
-    long line; /* in the file; 0: none */
+    /* Of a flat mirror that folds the axis: its normal is the axis, turned by tilt_y about Y and then by tilt_x about X
+     * (Y to Z). What follows is given as if the mirror was not tilted, so that first-order data are those of the
+     * unfolded system, along the folded axis. */
+    double tilt_x_deg, tilt_y_deg;
+    bool mirror; /* after which the light travels back: behind glass, through the same surfaces again */
+    long line;   /* in the file; 0: none */
 } lens_surface;
 
 typedef enum lens_aperture_kind {
@@ -105,6 +109,12 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b);
 /* The sag of a surface at a radius; NaN beyond the end of its conic. Pure. */
 double lens_surface_sag(const lens_surface *s, double rho);
 
+bool lens_folds(const lens_surface *s);
+/* Rotations in a frame of columns X, Y, Z with Z along the axis: to the normal of a fold mirror, and to the axis after
+ * it. Pure. */
+mat3 lens_tilt(const lens_surface *s);
+mat3 lens_fold(const lens_surface *s);
+
 /* The index after a surface, from that before it. Indices are below 0 where the light travels back, as in textbooks on
  * mirrors (Welford, Aberrations of Optical Systems). Pure. */
 double lens_index_after(const lens_surface *s, double before, double lambda_nm);
@@ -146,7 +156,8 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
 void lens_prescription_complete(lens_prescription *p);
 
 /* Files of lens prescriptions, by their ending:
- *   .zmx   sequential lens files of Zemax, in UTF-8 or UTF-16; surfaces STANDARD and EVENASPH
+ *   .zmx   sequential lens files of Zemax, in UTF-8 or UTF-16; surfaces STANDARD and EVENASPH, and coordinate breaks
+ *          that fold the axis at flat mirrors
  *   .dat   tables of pbrt: lines of radius, thickness, index and diameter; radius 0 is the stop
  *   .csv   tables with a header (lens_files.c states its keys and columns), which hold everything
  * Ownership: the caller releases the prescription. Errors: STATUS_BAD_INPUT with the file, line, column and remedy. */
@@ -159,7 +170,7 @@ typedef struct lens_glasses {
 } lens_glasses;
 
 /* The columns and keys of .csv files (lens_files.c). */
-enum { LENS_COLUMNS = 17, LENS_KEYS = 11 };
+enum { LENS_COLUMNS = 19, LENS_KEYS = 11 };
 extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
 
 /* Whether a path ends as such a file does. */

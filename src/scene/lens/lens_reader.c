@@ -208,3 +208,42 @@ char *lens_medium_text(const lens_medium *m, char *text)
     }
     return text;
 }
+
+/* --- glasses of Zemax's files --- */
+
+/* n_d 1.5 and V_d 40 are what Zemax writes for a glass of a catalogue. */
+static bool is_placeholder(double n, double V)
+{
+    return n == 1.5 && V == 40.0;
+}
+
+status lens_read_glass(const lens_reader *r, lens_surface *s)
+{
+    double n = 0.0, V = 0.0;
+    if (r->count < 2)
+        return lens_wrong(r, -1, "give the name of a glass", "GLAS has no name");
+    s->mirror = strcasecmp(r->word[1], "MIRROR") == 0;
+    if (s->mirror) {
+        s->medium = r->p->count > 1 ? s[-1].medium : s->medium;
+        return STATUS_OK;
+    }
+    const bool has_numbers = r->count > 5 && number_parse_real(r->word[4], &n) && number_parse_real(r->word[5], &V) &&
+                             n >= 1.0 && n < 10.0 && V >= 0.0;
+    const bool is_model = r->count > 2 && strcmp(r->word[2], "1") == 0;
+    if (is_model && has_numbers) {
+        s->medium = lens_medium_of_numbers(n, V);
+        return STATUS_OK;
+    }
+    diagnostic bad = {.what = ""};
+    const status code = lens_medium_parse(r->word[1], r->glasses, &s->medium, &bad);
+    if (code != STATUS_BAD_INPUT || bad.file[0]) {
+        if (code != STATUS_OK && r->why)
+            *r->why = bad;
+        return code;
+    }
+    if (!has_numbers || is_placeholder(n, V))
+        return lens_wrong(r, 1, "give the maker's catalogue: glasses FILE.agf", "%s", bad.what);
+    s->medium = lens_medium_of_numbers(n, V);
+    lens_note(r->p, "%.20s by its n_d and V_d", r->word[1]);
+    return STATUS_OK;
+}

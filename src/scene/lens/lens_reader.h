@@ -5,6 +5,7 @@
 #include "scene/lens/lens_prescription.h"
 #include "scene/model/params.h"
 #include "scene/model/place/placement.h"
+#include "scene/model/solids.h"
 
 enum { LENS_WORDS_MAX = 64 };
 
@@ -30,10 +31,39 @@ status lens_number(const lens_reader *r, int i, const char *what, double *out);
 lens_surface *lens_append(lens_reader *r, status *code);
 /* The medium of a word (lens_medium_parse), with its position. */
 status lens_read_medium(const lens_reader *r, int i, const char *word, lens_medium *out);
+/* The medium after a surface of a .zmx file, of the line GLAS name kind pickup n_d V_d ... */
+status lens_read_glass(const lens_reader *r, lens_surface *s);
 /* Adds a remark to the prescription's note. */
 void lens_note(lens_prescription *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 status lens_read_zmx(lens_reader *r, char *text);
+
+/* --- folded systems: lens_folds.c --- */
+
+bool lens_is_flat(const lens_surface *s);
+/* Makes it the same surface in a frame whose Z is the other way. */
+void lens_turn_round(lens_surface *s);
+
+/* A frame of columns X, Y, Z, and a point of the axis, which is along Z. */
+typedef struct lens_way {
+    mat3 frame;
+    vec3 at;
+} lens_way;
+
+/* How a surface stands to the axis: its normal is along it or against it, or tilted, or its vertex is not on it. */
+typedef enum lens_pose { LENS_AHEAD, LENS_BACK, LENS_TILTED, LENS_ASIDE } lens_pose;
+/* distance: from w->at to the vertex, along the axis. */
+lens_pose lens_way_pose(const lens_way *w, vec3 vertex, vec3 normal, double *distance);
+/* Turns the frame at a tilted mirror, whose tilts it sets. */
+void lens_way_fold(lens_way *w, vec3 normal, lens_surface *mirror);
+
+/* A coordinate break: decentre x, y; tilts about x, y, z; order, 0: the decentre first. */
+typedef struct lens_break {
+    double number[6];
+    bool given;
+} lens_break;
+/* Takes the breaks out of the surfaces, the first of which is the object and the last the image. */
+status lens_take_breaks(lens_reader *r, const lens_break *breaks);
 
 /* Sets parameters of a scene by name, one after the other, until the first error. */
 
@@ -52,12 +82,66 @@ void lens_put_number(lens_target *t, const char *name, const char *row, double v
 /* Whether an object of the group has the name. */
 bool lens_has(const scene *s, param_group group, const char *name);
 
+/* --- what a scene tells of a system: lens_setup.c --- */
+
+/* Whether an object's name is that of a system or begins with it and a hyphen; system "": any. */
+bool lens_belongs(const char *system, const char *name);
+/* Twelve digits, so that a product that was divided again is the published number. */
+double lens_tidy(double x);
+/* The fields and wavelengths of the system's beams; rotation_deg: of its first solid. */
+void lens_read_beams(const scene *s, const char *system, vec3 rotation_deg, lens_prescription *p);
+
+/* --- a system in a scene: lens_scene.c; its surfaces in the order of the light: lens_folds.c --- */
+
+/* A lens of the scene, with its place on the axis. */
+typedef struct placed_lens {
+    const solid *of;
+    double y_1, y_2;
+    size_t order; /* in the scene */
+    bool mirror;
+    double hole; /* of a mirror: its diameter */
+    int leg;     /* on which the light has passed it, from 1; 0: not yet */
+    bool cemented;
+} placed_lens;
+
+typedef struct lens_finder {
+    const scene *s;
+    const char *name;
+    placed_lens lens[LENS_SURFACES_MAX];
+    size_t count;
+    vec3 origin, axis;
+    const solid *stop, *screen;
+    bool mirrors;
+    /* while the surfaces are read: the present part of the axis, at the last vertex; the height of that vertex, and the
+     * direction of the light, 1 or -1, in the unfolded system */
+    lens_way way;
+    int leg;
+    double y, direction;
+    lens_prescription *p;
+    diagnostic *why;
+} lens_finder;
+
+/* The factor of a solid's own and its leader's scale. */
+double lens_size_of(const solid *of);
+/* Its distance from the first lens, along that one's axis. */
+double lens_along(const lens_finder *f, const solid *of);
+lens_surface lens_side_of(const lens_finder *f, const placed_lens *l, int side);
+/* STATUS_BAD_INPUT about a solid. */
+status lens_refuse(const lens_finder *f, const solid *of, const char *remedy, const char *what);
+status lens_read_surfaces(lens_finder *f);
+
 /* --- the solids of a system: lens_solids.c; lens_parts.c for their media and what holds them --- */
 
 /* Fractions of a diameter: by how much the rim of an overlapped element is smaller, so that no rims coincide; the
  * clearance of the tube. */
 #define LENS_RIM_GAP 1e-6
 #define LENS_TUBE_CLEARANCE 1.02
+
+/* A straight part of the axis: the point at height y is at + turn (0, y, 0), in the prescription's unit. */
+typedef struct lens_leg {
+    mat3 turn;
+    vec3 at;
+} lens_leg;
 
 /* An element between two surfaces, in the order along the axis. */
 typedef struct lens_element {
@@ -69,6 +153,7 @@ typedef struct lens_element {
     int64_t rank;              /* priority above that of the others it is cemented to */
     const lens_medium *medium; /* NULL: a mirror */
     double direction;          /* of the light before a mirror */
+    lens_leg leg;
     object_name name;
 } lens_element;
 
@@ -78,7 +163,8 @@ typedef struct lens_builder {
     const lens_prescription *p;
     const lens_placement *at;
     mat3 turn;
-    double y[LENS_SURFACES_MAX + 1]; /* of the vertices, and of the image */
+    double y[LENS_SURFACES_MAX + 1]; /* of the vertices, and of the image, as if no mirror was tilted */
+    lens_leg leg[LENS_SURFACES_MAX + 1];
     lens_element element[LENS_SURFACES_MAX];
     size_t count;
 } lens_builder;
@@ -87,9 +173,15 @@ typedef struct lens_builder {
 void lens_part_name(const lens_builder *b, object_name name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Places a solid at a height along the axis. The first one leads, the others follow it. */
-void lens_put_at(lens_builder *b, const char *name, double y);
+void lens_put_at(lens_builder *b, const char *name, const lens_leg *leg, double y);
 /* The name of the material of a medium; the scene's own material of that name has precedence. */
 void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name);
+/* The medium of a solid's material. */
+status lens_medium_of(const scene *s, const solid *of, lens_medium *out, diagnostic *why);
+/* The name of the material of mirrors. */
+const char *lens_mirror_material(lens_builder *b);
+/* A plug of the surrounding medium in the hole of a mirror. */
+void lens_add_hole(lens_builder *b, const lens_element *e, double hole);
 /* The name of a black opaque material for stops and mounts. */
 const char *lens_black(lens_builder *b);
 /* The height of a surface at a radius, within its diameter. */

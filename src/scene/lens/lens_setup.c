@@ -1,4 +1,5 @@
-/* A complete scene about a lens system: camera, object, light and beams (lens_prescription.h). */
+/* A complete scene about a lens system: camera, object, light and beams; and the fields of its beams, read back
+ * (lens_prescription.h). */
 #include "base/number.h"
 #include "scene/lens/lens_prescription.h"
 #include "scene/lens/lens_reader.h"
@@ -27,6 +28,7 @@ typedef struct setup {
     const lens_prescription *p;
     lens_first_order f;
     double length;   /* from the first vertex to the image */
+    vec3 at, axis;   /* the image on the axis, and its direction there, which mirrors fold */
     double distance; /* of the object */
     double object;   /* half height of the object */
     double image;    /* half height of the image */
@@ -67,8 +69,9 @@ static void set_camera(setup *u)
                  radius = 0.5 * u->f.pupil_diameter * pupil / fmax(fabs(u->f.efl), 1e-9),
                  cone = radius / pupil * behind + u->image * (1.0 + behind / pupil);
     u->cone = cone;
-    lens_put(t, "camera", "position", "0,0,%.12g", u->length + side * behind);
-    lens_put(t, "camera", "target", "0,0,%.12g", u->length);
+    const vec3 eye = vec3_add(u->at, vec3_scale(u->axis, side * behind));
+    lens_put(t, "camera", "position", "%.12g,%.12g,%.12g", eye.x + 0.0, eye.y + 0.0, eye.z);
+    lens_put(t, "camera", "target", "%.12g,%.12g,%.12g", u->at.x + 0.0, u->at.y + 0.0, u->at.z);
     lens_put(t, "camera", "roll_deg", "180");
     lens_put_number(t, "camera", "focus", rounded(behind, 12));
     lens_put_number(t, "camera", "fov_deg", rounded(2.0 * 57.295779513 * atan(0.55 * u->image / behind), 4));
@@ -178,9 +181,15 @@ static setup measured(scene *s, const lens_prescription *p, lens_prescription *f
     u.object = slope * (u.distance + u.f.pupil);
     const lens_first_order near = lens_first_order_of(focused, p->wavelength[p->primary].nm);
     u.image = fabs(near.magnification) * u.object;
-    for (size_t i = 0; i + 1 < p->count; i++)
-        u.length += p->surface[i].thickness;
-    u.length += near.image;
+    mat3 frame = rotation_from_deg(vec3_make(0.0, 0.0, 0.0)); /* X, Y, Z of the prescription are those of the scene */
+    for (size_t i = 0; i < p->count; i++) {
+        const double length = i + 1 < p->count ? p->surface[i].thickness : near.image;
+        if (lens_folds(&p->surface[i]))
+            frame = mat3_product(frame, lens_fold(&p->surface[i]));
+        u.axis = mat3_apply(frame, vec3_make(0.0, 0.0, 1.0));
+        u.at = vec3_add(u.at, vec3_scale(u.axis, length));
+        u.length += length;
+    }
     return u;
 }
 
@@ -214,4 +223,59 @@ status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses
         *out = NULL;
     }
     return u.t.code;
+}
+
+/* --- fields and wavelengths of a system's beams --- */
+
+double lens_tidy(double x)
+{
+    char text[NUMBER_TEXT_MAX];
+    double rounded = x;
+    number_parse_real(number_format_digits(x, 12, text), &rounded);
+    return rounded;
+}
+
+bool lens_belongs(const char *system, const char *name)
+{
+    const size_t length = strlen(system);
+    return length == 0 || (strncmp(name, system, length) == 0 && (name[length] == '-' || !name[length]));
+}
+
+static void add_field(lens_prescription *p, double x, double y)
+{
+    for (size_t i = 0; i < p->field_count; i++)
+        if (p->field[i].x == x && p->field[i].y == y)
+            return;
+    if (p->field_count < LENS_LIST_MAX)
+        p->field[p->field_count++] = (lens_field){x, y, 1.0};
+}
+
+static void add_wavelength(lens_prescription *p, double nm)
+{
+    for (size_t i = 0; i < p->wavelength_count; i++)
+        if (p->wavelength[i].nm == nm)
+            return;
+    if (p->wavelength_count < LENS_LIST_MAX)
+        p->wavelength[p->wavelength_count++] = (lens_wavelength){nm, 1.0};
+}
+
+void lens_read_beams(const scene *s, const char *system, vec3 rotation_deg, lens_prescription *p)
+{
+    const double deg = 57.295779513082320877;
+    const mat3 turn = rotation_from_deg(rotation_deg);
+    p->field_count = p->wavelength_count = 0;
+    for (size_t i = 0; i < s->beam_count; i++) {
+        const beam *b = &s->beams[i];
+        if (!lens_belongs(system, b->name) || !strstr(b->name, "-field-") || !beam_is_parallel(b))
+            continue;
+        const vec3 d = mat3_apply_transposed(turn, beam_axis(b));
+        if (!(d.y > 0.0))
+            continue;
+        add_field(p, lens_tidy(deg * atan2(d.x, d.y)) + 0.0, lens_tidy(deg * atan2(-d.z, d.y)) + 0.0);
+        add_wavelength(p, b->lambda_nm);
+    }
+    if (p->field_count == 0)
+        add_field(p, 0.0, 0.0);
+    if (p->wavelength_count == 0)
+        add_wavelength(p, s->render.lambda_nm);
 }

@@ -48,15 +48,23 @@ bool lens_has(const scene *s, param_group group, const char *name)
 }
 
 /* Places a solid at a height along the axis. The first one leads, the others follow it. */
-void lens_put_at(lens_builder *b, const char *name, double y)
+void lens_put_at(lens_builder *b, const char *name, const lens_leg *leg, double y)
 {
     const vec3 p = vec3_add(b->at->position, mat3_apply(b->turn, vec3_make(0.0, b->at->scale * y, 0.0))),
                r = b->at->rotation_deg;
     if (strcmp(name, b->at->name) != 0) {
+        const vec3 q = vec3_add(leg->at, mat3_apply(leg->turn, vec3_make(0.0, y, 0.0))),
+                   turn = rotation_to_deg(leg->turn);
+        const double k = b->at->scale;
         lens_put(&b->t, name, "follows", "%s", b->at->name);
-        lens_put(&b->t, name, "offset", "0,%.17g,0", b->at->scale * (y - b->leader));
+        lens_put(&b->t, name, "offset", "%.17g,%.17g,%.17g", k * q.x + 0.0, k * (q.y - b->leader), k * q.z + 0.0);
+        if (turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0)
+            lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", turn.x + 0.0, turn.y + 0.0, turn.z + 0.0);
         return;
     }
+    if (leg->turn.row[1].y != 1.0 && b->t.code == STATUS_OK)
+        b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "begin with a lens, or a mirror that is not tilted",
+                             "the first element of %.60s is a tilted mirror", b->at->name);
     b->leader = y;
     lens_put(&b->t, name, "position", "%.17g,%.17g,%.17g", p.x, p.y, p.z);
     lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", r.x, r.y, r.z);
@@ -134,7 +142,7 @@ static status element_check(lens_builder *b, const lens_element *e)
 static void put_element(lens_builder *b, const lens_element *e)
 {
     const double scale = b->at->scale;
-    lens_put_at(b, e->name, e->y_1 - e->before);
+    lens_put_at(b, e->name, &e->leg, e->y_1 - e->before);
     lens_put_number(&b->t, e->name, "thickness", (e->length + e->before + e->after) * scale);
     lens_put_number(&b->t, e->name, "diameter", e->diameter * scale);
     for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim */
@@ -165,6 +173,7 @@ static void add_element(lens_builder *b, size_t i)
     lens_element *e = &b->element[b->count++];
     *e = (lens_element){.front = forwards ? i : i + 1, .back = forwards ? i + 1 : i, .medium = &p->surface[i].medium};
     e->y_1 = b->y[e->front], e->y_2 = b->y[e->back], e->length = fabs(p->surface[i].thickness);
+    e->leg = b->leg[i + 1];
     name_element(b, e);
     if (b->y[i + 1] == b->y[i] && b->t.code == STATUS_OK)
         b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "give a thickness other than 0",
@@ -204,6 +213,61 @@ static bool are_cemented(const lens_element *a, const lens_element *b)
     return a->medium && b->medium && (a->back == b->front || a->front == b->back);
 }
 
+/* A leg turned about its point at height y, by a rotation in a frame of X, Y, Z: +x, -z and +y of the solids. */
+static lens_leg turned(const lens_leg *leg, double y, mat3 by)
+{
+    const vec3 *r = by.row;
+    const mat3 own = {
+        {vec3_make(r[0].x, r[0].z, -r[0].y), vec3_make(r[2].x, r[2].z, -r[2].y), vec3_make(-r[1].x, -r[1].z, r[1].y)}};
+    const vec3 up = vec3_make(0.0, y, 0.0);
+    lens_leg out = {.turn = mat3_product(leg->turn, own)};
+    out.at = vec3_sub(vec3_add(leg->at, mat3_apply(leg->turn, up)), mat3_apply(out.turn, up));
+    return out;
+}
+
+static bool is_same(double a, double b)
+{
+    return fabs(a - b) <= 1e-9 * (1.0 + fabs(a));
+}
+
+static bool same_place(const lens_builder *b, size_t i, size_t k)
+{
+    const lens_surface *s = &b->p->surface[i], *t = &b->p->surface[k];
+    bool same = is_same(b->y[i], b->y[k]) && is_same(s->radius, t->radius) && is_same(s->conic, t->conic);
+    for (int n = 0; n < LENS_EVEN_TERMS; n++)
+        same &= s->even[n] == t->even[n];
+    return same;
+}
+
+/* Whether the light passes an element again between surfaces i and i + 1, after a mirror. */
+static bool is_again(lens_builder *b, size_t i)
+{
+    const bool forwards = b->y[i + 1] > b->y[i];
+    const size_t front = forwards ? i : i + 1, back = forwards ? i + 1 : i;
+    for (size_t k = 0; k < b->count; k++) {
+        const lens_element *e = &b->element[k];
+        if (e->medium && same_place(b, e->front, front) && same_place(b, e->back, back))
+            return true;
+        if (e->medium && b->t.code == STATUS_OK && b->p->surface[i].mirror && (e->front == i || e->back == i))
+            b->t.code =
+                diagnose(b->t.why, STATUS_BAD_INPUT,
+                         "after the mirror, give the surfaces before it again, with thicknesses below 0",
+                         "surface %zu is not that by which the light entered the glass of mirror %zu", i + 2, i + 1);
+    }
+    return false;
+}
+
+/* A mirror's body has the reflecting surface, behind which its glass ends, half as deep as the body is thick. */
+static void silver(lens_element *glass, lens_element *mirror)
+{
+    if (!glass->medium || mirror->medium || (glass->front != mirror->front && glass->back != mirror->back))
+        return;
+    mirror->diameter = fmax(mirror->diameter, glass->diameter);
+    glass->diameter = fmin(glass->diameter, mirror->diameter * (1.0 - LENS_RIM_GAP));
+    *(glass->back == mirror->back ? &glass->after : &glass->before) = 0.5 * mirror->length;
+    mirror->rank = glass->rank + 1;
+}
+
 static void cement_all(lens_builder *b)
 {
     for (size_t i = 0; i + 1 < b->count && b->t.code == STATUS_OK; i++)
@@ -218,6 +282,9 @@ static void cement_all(lens_builder *b)
             if (wide->rank <= narrow->rank)
                 wide->rank = narrow->rank + 1;
         }
+    for (size_t i = 0; i < b->count; i++)
+        for (size_t k = 0; k < b->count; k++)
+            silver(&b->element[i], &b->element[k]);
     for (size_t i = 0; i < b->count; i++) {
         put_element(b, &b->element[i]);
         lens_put(&b->t, b->element[i].name, "priority", "%lld", (long long)(b->at->priority + 2 + b->element[i].rank));
@@ -228,48 +295,16 @@ static void cement_all(lens_builder *b)
 
 /* --- mirrors --- */
 
-/* A plug of the surrounding medium in the hole of a mirror. */
-static void add_hole(lens_builder *b, const lens_element *e, double hole)
-{
-    object_name name, plug;
-    lens_part_name(b, name, "hole-%zu", b->count);
-    lens_part_name(b, plug, "hole");
-    const background *around = &b->t.s->background;
-    if (!lens_has(b->t.s, PARAM_MATERIAL, plug)) {
-        THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, plug, NULL, b->t.why));
-        lens_put(&b->t, plug, "transparency", "1");
-        if (surrounding_medium_name(around))
-            lens_put(&b->t, plug, "medium", "%s", surrounding_medium_name(around));
-        else
-            lens_put_number(&b->t, plug, "ior", around->ior);
-    }
-    const double length = e->y_2 - e->y_1;
-    const lens_surface *of = &b->p->surface[e->front];
-    const double sag = fabs(lens_surface_sag(of, 0.5 * e->diameter));
-    lens_add_solid(&b->t, "cylinder", name);
-    lens_put(&b->t, name, "material", "%s", plug);
-    lens_put_at(b, name, e->y_1 - sag - length);
-    lens_put_number(&b->t, name, "radius", 0.5 * hole * b->at->scale);
-    lens_put_number(&b->t, name, "height", (3.0 * length + 2.0 * sag) * b->at->scale);
-    lens_put(&b->t, name, "priority", "%lld", (long long)(b->at->priority + 2 + LENS_SURFACES_MAX));
-}
-
-static const char *mirror_material(lens_builder *b)
-{
-    static const char name[] = "mirror";
-    if (!lens_has(b->t.s, PARAM_MATERIAL, name)) {
-        THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));
-        lens_put(&b->t, name, "medium", "aluminium");
-    }
-    return name;
-}
-
 /* A body behind the reflecting surface, with a flat back, an eighth of its diameter thick where it is thinnest. */
 static void add_mirror(lens_builder *b, size_t i, double direction)
 {
     const lens_surface *s = &b->p->surface[i];
     lens_element *e = &b->element[b->count++];
-    *e = (lens_element){.front = i, .back = i, .diameter = s->diameter, .direction = direction, .rank = 0};
+    *e = (lens_element){.front = i,
+                        .back = i,
+                        .diameter = s->diameter,
+                        .direction = direction,
+                        .leg = turned(&b->leg[i], b->y[i], lens_tilt(s))};
     name_element(b, e);
     const double sag = lens_surface_sag(s, 0.5 * s->diameter),
                  thickness = 0.125 * s->diameter + fmax(0.0, sag * direction);
@@ -281,14 +316,14 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
     const bool ahead = direction > 0.0;
     e->y_1 = ahead ? b->y[i] : b->y[i] - thickness;
     e->y_2 = e->y_1 + thickness, e->length = thickness;
-    const char *paint = mirror_material(b);
+    const char *paint = lens_mirror_material(b);
     lens_add_solid(&b->t, "lens", e->name);
     lens_put(&b->t, e->name, "material", "%s", paint);
     put_side(b, e->name, ahead ? 1 : 2, s);
     lens_put_number(&b->t, e->name, ahead ? "radius_2" : "radius_1", 0.0);
     put_element(b, e);
     if (s->hole > 0.0)
-        add_hole(b, e, s->hole);
+        lens_add_hole(b, e, s->hole);
 }
 
 /* --- the system --- */
@@ -297,15 +332,19 @@ static void build(lens_builder *b)
 {
     const lens_prescription *p = b->p;
     double direction = 1.0;
-    for (size_t i = 0; i < p->count; i++)
-        b->y[i + 1] = b->y[i] + p->surface[i].thickness;
+    b->leg[0].turn = rotation_from_deg(vec3_make(0.0, 0.0, 0.0));
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        b->y[i + 1] = b->y[i] + s->thickness;
+        b->leg[i + 1] = lens_folds(s) ? turned(&b->leg[i], b->y[i], lens_fold(s)) : b->leg[i];
+    }
     for (size_t i = 0; i < p->count && b->t.code == STATUS_OK; i++) {
         if (p->surface[i].mirror) {
             add_mirror(b, i, direction);
             direction = -direction;
-        } else if (!lens_is_air(&p->surface[i].medium) && i + 1 < p->count) {
-            add_element(b, i);
         }
+        if (!lens_is_air(&p->surface[i].medium) && i + 1 < p->count && !is_again(b, i) && b->t.code == STATUS_OK)
+            add_element(b, i);
     }
     cement_all(b);
     double widest = 0.0;

@@ -68,9 +68,13 @@ static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
 {
     char word[LENS_NAME_MAX];
     const int terms = terms_of(p);
+    bool folds = false;
+    for (size_t i = 0; i < p->count; i++)
+        folds |= lens_folds(&p->surface[i]);
     (void)why;
     put_system(p, out);
     fputs("radius,thickness,medium,diameter,conic,stop,hole", out);
+    fputs(folds ? ",tilt_x,tilt_y" : "", out);
     for (int k = 0; k < terms; k++)
         fprintf(out, ",a%d", 4 + 2 * k);
     fputs(",name\n", out);
@@ -83,6 +87,8 @@ static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
         put_number(out, ",", s->conic);
         fprintf(out, ",%d", p->stop == (int)i);
         put_number(out, ",", s->hole);
+        if (folds)
+            put_number(out, ",", s->tilt_x_deg), put_number(out, ",", s->tilt_y_deg);
         for (int k = 0; k < terms; k++)
             put_number(out, ",", s->even[k]);
         fputc(',', out);
@@ -141,6 +147,15 @@ static void put_zmx_glass(const lens_surface *s, FILE *out)
     fputs(" 0 0 0 0 0 0\n", out);
 }
 
+/* Before and after a fold mirror, whose own thickness is then 0. */
+static void put_zmx_break(size_t number, const lens_surface *s, double thickness, FILE *out)
+{
+    fprintf(out, "SURF %zu\n  TYPE COORDBRK\n", number);
+    put_number(out, "  PARM 3 ", s->tilt_x_deg), fputc('\n', out);
+    put_number(out, "  PARM 4 ", s->tilt_y_deg), fputc('\n', out);
+    put_number(out, "  DISZ ", thickness), fputc('\n', out);
+}
+
 static void put_zmx_surface(size_t number, const lens_surface *s, bool stop, FILE *out)
 {
     bool even = false;
@@ -191,6 +206,10 @@ static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
     const char *unit = NULL;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         unit = fabs(units[i].mm - p->unit_mm) <= 1e-12 * p->unit_mm ? units[i].word : unit;
+    for (size_t i = 0; i < p->count; i++)
+        if (p->surface[i].tilt_x_deg != 0.0 && p->surface[i].tilt_y_deg != 0.0)
+            return diagnose(why, STATUS_BAD_INPUT, "write a .csv file",
+                            "surface %zu is tilted about two axes, for which a .zmx file has no simple form", i + 1);
     if (!unit)
         return diagnose(why, STATUS_BAD_INPUT, "set render.unit_m to 0.001, 0.01, 0.0254 or 1, or write a .csv file",
                         "a .zmx file has no unit of %g mm", p->unit_mm);
@@ -216,10 +235,19 @@ static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
     fprintf(out, "\nPWAV %zu\n", p->primary + 1);
     const lens_surface object = {.thickness = p->object_distance, .medium = {.kind = LENS_AIR}},
                        plane = {.radius = p->image_radius, .diameter = p->image_diameter, .medium = {.kind = LENS_AIR}};
-    put_zmx_surface(0, &object, false, out);
-    for (size_t i = 0; i < p->count; i++)
-        put_zmx_surface(i + 1, &p->surface[i], (int)i == p->stop, out);
-    put_zmx_surface(p->count + 1, &plane, false, out);
+    size_t number = 0;
+    put_zmx_surface(number++, &object, false, out);
+    for (size_t i = 0; i < p->count; i++) {
+        lens_surface s = p->surface[i];
+        const double thickness = s.thickness;
+        const bool folds = lens_folds(&s);
+        if (folds)
+            put_zmx_break(number++, &s, 0.0, out), s.thickness = 0.0;
+        put_zmx_surface(number++, &s, (int)i == p->stop, out);
+        if (folds)
+            put_zmx_break(number++, &s, thickness, out);
+    }
+    put_zmx_surface(number, &plane, false, out);
     return STATUS_OK;
 }
 

@@ -16,6 +16,7 @@ typedef struct zmx_reader {
     double x[LENS_LIST_MAX], y[LENS_LIST_MAX];
     int fields, waves; /* as FTYP says; 0: by the values */
     int primary;
+    lens_break breaks[LENS_SURFACES_MAX];
 } zmx_reader;
 
 static lens_surface *surface_of(const zmx_reader *z)
@@ -30,18 +31,22 @@ static status read_length(const lens_reader *r, const char *what, double *out)
     return r->count > 1 && strncasecmp(r->word[1], "INF", 3) == 0 ? STATUS_OK : lens_number(r, 1, what, out);
 }
 
-static status read_type(const zmx_reader *z)
+static status read_type(zmx_reader *z)
 {
     const lens_reader *r = z->r;
     const char *word = r->count > 1 ? r->word[1] : "";
     if (strcasecmp(word, "STANDARD") == 0 || strcasecmp(word, "EVENASPH") == 0)
         return STATUS_OK;
-    return lens_wrong(r, 1, "use surfaces STANDARD and EVENASPH; in a scene file, solids can be of any shape",
+    if (strcasecmp(word, "COORDBRK") == 0) {
+        z->breaks[r->p->count - 1].given = true;
+        return STATUS_OK;
+    }
+    return lens_wrong(r, 1, "use surfaces STANDARD, EVENASPH and COORDBRK; in a scene file, solids can be of any shape",
                       "surface %zu is of type %.20s, which is not supported", r->p->count - 1, word);
 }
 
 /* PARM 1 is the coefficient of r^2, PARM 2 of r^4 and so on. */
-static status read_parameter(const zmx_reader *z)
+static status read_parameter(zmx_reader *z)
 {
     const lens_reader *r = z->r;
     double number, value;
@@ -49,6 +54,11 @@ static status read_parameter(const zmx_reader *z)
     TRY(lens_number(r, 2, "a parameter", &value));
     if (value == 0.0)
         return STATUS_OK;
+    lens_break *b = &z->breaks[r->p->count - 1];
+    if (b->given && number >= 1.0 && number <= 6.0) {
+        b->number[(int)number - 1] = value;
+        return STATUS_OK;
+    }
     const int i = (int)number - 2;
     if (number == 1.0)
         return lens_wrong(r, 2,
@@ -59,46 +69,6 @@ static status read_parameter(const zmx_reader *z)
         return lens_wrong(r, 1, "use PARM 2 to 10, the coefficients of r^4 to r^20", "parameter %g is not supported",
                           number);
     surface_of(z)->even[i] = value;
-    return STATUS_OK;
-}
-
-/* n_d 1.5 and V_d 40 are what Zemax writes for a glass of a catalogue. */
-static bool is_placeholder(double n, double V)
-{
-    return n == 1.5 && V == 40.0;
-}
-
-/* GLAS name kind pickup n_d V_d ... */
-static status read_glass(const zmx_reader *z)
-{
-    const lens_reader *r = z->r;
-    lens_surface *s = surface_of(z);
-    double n = 0.0, V = 0.0;
-    if (r->count < 2)
-        return lens_wrong(r, -1, "give the name of a glass", "GLAS has no name");
-    s->mirror = strcasecmp(r->word[1], "MIRROR") == 0;
-    if (s->mirror) {
-        s->medium = r->p->count > 1 ? s[-1].medium : s->medium;
-        return STATUS_OK;
-    }
-    const bool has_numbers = r->count > 5 && number_parse_real(r->word[4], &n) && number_parse_real(r->word[5], &V) &&
-                             n >= 1.0 && n < 10.0 && V >= 0.0;
-    const bool is_model = r->count > 2 && strcmp(r->word[2], "1") == 0;
-    if (is_model && has_numbers) {
-        s->medium = lens_medium_of_numbers(n, V);
-        return STATUS_OK;
-    }
-    diagnostic bad = {.what = ""};
-    const status code = lens_medium_parse(r->word[1], r->glasses, &s->medium, &bad);
-    if (code != STATUS_BAD_INPUT || bad.file[0]) {
-        if (code != STATUS_OK && r->why)
-            *r->why = bad;
-        return code;
-    }
-    if (!has_numbers || is_placeholder(n, V))
-        return lens_wrong(r, 1, "give the maker's catalogue: glasses FILE.agf", "%s", bad.what);
-    s->medium = lens_medium_of_numbers(n, V);
-    lens_note(r->p, "%.20s by its n_d and V_d", r->word[1]);
     return STATUS_OK;
 }
 
@@ -164,7 +134,7 @@ static status read_surface_line(zmx_reader *z)
     if (strcmp(key, "DISZ") == 0)
         return read_thickness(z);
     if (strcmp(key, "GLAS") == 0)
-        return read_glass(z);
+        return lens_read_glass(r, s);
     if (strcmp(key, "DIAM") == 0)
         return read_diameter(z, 1, &s->diameter);
     if (strcmp(key, "CLAP") == 0)
@@ -361,6 +331,7 @@ static status end_surfaces(zmx_reader *z)
     lens_prescription *p = r->p;
     if (p->count < 3)
         return lens_wrong(r, -1, "give an object, surfaces and an image", "the file has %zu surfaces", p->count);
+    TRY(lens_take_breaks(r, z->breaks));
     const lens_surface object = p->surface[0], plane = p->surface[p->count - 1];
     if (object.medium.kind != LENS_AIR) {
         r->line = object.line;
