@@ -11,7 +11,8 @@ const lens_options lens_options_usual = {.fan_rays = 20, .spot_grid = 32, .wave_
 static const lens_section sections[] = {
     {.name = "first-order",
      .x = "",
-     .meaning = "Gaussian constants at the primary wavelength; positions z from the first vertex",
+     .meaning = "Gaussian constants at the primary wavelength; positions z from the first vertex, along the axis as if "
+                "no mirror folded it",
      .single = true},
     {.name = "surfaces",
      .x = "",
@@ -41,8 +42,11 @@ static const lens_section sections[] = {
     {.name = "ghosts",
      .x = "first surface",
      .meaning = "light that `surface` and then the surface x reflect: its focus from the image, the "
-                "radius of its blur and its part of the light at normal incidence"},
-    {.name = "ghosts-sum", .x = "reflections", .meaning = "all such light", .single = true},
+                "radius of its blur and its part of the light, along the axis and with coatings"},
+    {.name = "ghosts-sum",
+     .x = "reflections",
+     .meaning = "all light that arrives after 2 and 4 reflections; omitted: pairs of surfaces with a mirror between "
+                "them, whose ghosts are not followed"},
     {.name = "chief",
      .x = "",
      .meaning = "where chief rays meet the image; lateral_colour: from that of the primary wavelength"},

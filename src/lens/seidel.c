@@ -102,29 +102,36 @@ static void ghost_move(const lens_model *m, int i, bool forth, ghost_ray *r)
     r->y += r->u * (to - m->step[i].z);
 }
 
+/* By surface, for light along the axis: reflectances from before and from behind, and transmittance, with coatings. A
+ * mirror passes the light on by its reflectance. */
+typedef struct ghost_powers {
+    double R[LENS_SURFACES_MAX], back[LENS_SURFACES_MAX], T[LENS_SURFACES_MAX];
+    bool mirrors;
+} ghost_powers;
+
 /* A ghost by surfaces j and then i < j. Returns the fraction of the light; the ray ends at the image. */
-static double ghost_trace(const lens_study *s, int i, int j, const double *R, ghost_ray *r)
+static double ghost_trace(const lens_study *s, int i, int j, const ghost_powers *g, ghost_ray *r)
 {
     const lens_model *m = &s->model[s->primary];
     double weight = 1.0;
     *r = (ghost_ray){s->first.marginal.y[0], s->first.marginal.u[0], m->n_object};
     for (int k = 0; k < j; k++) {
         ghost_step(m, k, true, false, r);
-        weight *= m->step[k].mirror ? R[k] : 1.0 - R[k];
+        weight *= g->T[k];
         ghost_move(m, k, true, r);
     }
     ghost_step(m, j, true, true, r);
-    weight *= R[j];
+    weight *= g->R[j];
     for (int k = j; k > i; k--) {
         ghost_move(m, k, false, r);
         ghost_step(m, k - 1, false, k - 1 == i, r);
-        weight *= k - 1 == i ? R[i] : 1.0 - R[k - 1];
+        weight *= k - 1 == i ? g->back[i] : g->T[k - 1];
     }
     for (int k = i; k < m->count; k++) {
         ghost_move(m, k, true, r);
         if (k + 1 < m->count) {
             ghost_step(m, k + 1, true, false, r);
-            weight *= m->step[k + 1].mirror ? R[k + 1] : 1.0 - R[k + 1];
+            weight *= g->T[k + 1];
         }
     }
     return weight;
@@ -139,21 +146,69 @@ static bool mirror_between(const lens_model *m, int i, int j)
     return false;
 }
 
+static status measure_powers(const lens_study *s, ghost_powers *g, diagnostic *why)
+{
+    const lens_model *m = &s->model[s->primary];
+    lens_bench *b = &s->bench[s->primary];
+    g->mirrors = false;
+    for (int i = 0; i < m->count; i++) {
+        g->R[i] = g->back[i] = b->R[i];
+        g->T[i] = m->step[i].mirror ? b->R[i] : b->T[i];
+        g->mirrors |= m->step[i].mirror;
+    }
+    return g->mirrors ? STATUS_OK : lens_reflectances_back(b, g->back, why);
+}
+
+/* The light that arrives after an even number of reflections, in all orders: forth[i] arrives at surface i, the last at
+ * the image, after k reflections; back[i] comes back to surface i. */
+static double reflected_light(const lens_model *m, const ghost_powers *g, int reflections)
+{
+    double forth[LENS_SURFACES_MAX + 1], back[LENS_SURFACES_MAX];
+    forth[0] = 1.0;
+    for (int i = 0; i < m->count; i++)
+        forth[i + 1] = forth[i] * g->T[i];
+    for (int k = 0; k < reflections; k += 2) {
+        back[m->count - 1] = 0.0;
+        for (int i = m->count - 1; i > 0; i--)
+            back[i - 1] = back[i] * g->T[i] + forth[i] * g->R[i];
+        forth[0] = 0.0;
+        for (int i = 0; i < m->count; i++)
+            forth[i + 1] = forth[i] * g->T[i] + back[i] * g->back[i];
+    }
+    return forth[m->count];
+}
+
+static void put_ghost_sum(lens_study *s, double reflections, const char *quantity, double value)
+{
+    lens_row_put(s->out, (lens_row){.section = "ghosts-sum",
+                                    .x = reflections,
+                                    .lambda_nm = s->model[s->primary].lambda_nm,
+                                    .quantity = quantity,
+                                    .unit = "",
+                                    .value = value});
+}
+
 status lens_ghosts(lens_study *s, diagnostic *why)
 {
     const lens_model *m = &s->model[s->primary];
     lens_bench *b = &s->bench[s->primary];
     lens_ray axis;
+    ghost_powers g;
     TRY(lens_ray_trace(
         b, vec3_make(0.0, 0.0, isinf(m->object_distance) ? -1.0 - 0.1 * m->step[m->count - 1].z : -m->object_distance),
         vec3_make(0.0, 0.0, 1.0), &axis, why));
-    double total = 0.0;
+    TRY(measure_powers(s, &g, why));
+    double total = 0.0, omitted = 0.0;
     for (int j = 1; j < m->count && axis.loss == LENS_PASSES; j++)
         for (int i = 0; i < j; i++) {
-            if (m->step[i].silent || m->step[j].silent || mirror_between(m, i, j))
+            if (m->step[i].silent || m->step[j].silent)
                 continue;
+            if (mirror_between(m, i, j)) {
+                omitted++;
+                continue;
+            }
             ghost_ray r;
-            const double weight = ghost_trace(s, i, j, b->R, &r);
+            const double weight = ghost_trace(s, i, j, &g, &r);
             const struct {
                 const char *name, *unit;
                 double value;
@@ -170,11 +225,10 @@ status lens_ghosts(lens_study *s, diagnostic *why)
                                                 .value = rows[k].value});
             total += weight;
         }
-    lens_row_put(s->out, (lens_row){.section = "ghosts-sum",
-                                    .x = 2.0,
-                                    .lambda_nm = m->lambda_nm,
-                                    .quantity = "weight",
-                                    .unit = "",
-                                    .value = axis.loss == LENS_PASSES ? total : NAN});
+    const bool passes = axis.loss == LENS_PASSES;
+    put_ghost_sum(s, 2.0, "weight", passes ? total : NAN);
+    put_ghost_sum(s, 2.0, "omitted", passes ? omitted : NAN);
+    if (!g.mirrors)
+        put_ghost_sum(s, 4.0, "weight", passes ? reflected_light(m, &g, 4) : NAN);
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
-# `cuvette lens report`: random lenses against the independent sequential trace of lens_report.py, the forms of its
-# output, the page of figures, and what it refuses: lens_report.sh [PROGRAM].
+# `cuvette lens report`: random lenses against the independent sequential trace of lens_report.py, ghosts
+# against lens_ghosts.py, the forms of its output, the page of figures, and what it refuses: lens_report.sh [PROGRAM].
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -20,6 +20,11 @@ lenses=5
 found=$(python3 "$root/tests/cli/lens_report.py" "$program" random $lenses 1 2>&1)
 awk '{ exit !(NF == 4 && $1 < 1e-9 && $2 < 1e-8 && $3 > 400) }' <<<"$found"
 verdict $? "rays, wavefronts and spots are those of an independent trace" "mm, waves, rays, refused: $found"
+
+# --- ghosts of coated lenses
+found=$(python3 "$root/tests/cli/lens_ghosts.py" "$program" random 2>&1)
+awk '{ exit !(NF == 2 && $1 == 36 && $2 < 1e-10) }' <<<"$found"
+verdict $? "ghosts have the powers of characteristic matrices" "ghosts, relative difference: $found"
 
 # --- output
 cat >triplet.csv <<'END'

@@ -442,6 +442,79 @@ static void a_plate_has_one_ghost_with_fresnels_weight(void **state)
     end(b);
 }
 
+/* A quarter-wave layer has R = ((n0 ns - n1^2) / (n0 ns + n1^2))^2 from both sides. The series of all numbers of
+ * reflections between two surfaces is T^2 (R R')^k. */
+static void coated_ghosts_have_the_powers_of_their_layers(void **state)
+{
+    (void)state;
+    bench *b = begin(LENS_APERTURE_PUPIL, 10.0);
+    diagnostic why = {0};
+    scene *s = NULL;
+    lens_place place;
+    b->p.wavelength[0].nm = 550.0;
+    add(b, 100.0, 5.0, 1.5, 20.0);
+    add(b, 0.0, 200.0, 1.0, 20.0);
+    assert_int_equal(lens_place_alone(&b->p, NULL, &s, &place, &why), STATUS_OK);
+    assert_int_equal(scene_set_assignment(s, "lens.coating=1.38 550/4", &why), STATUS_OK);
+    assert_int_equal(lens_report_make(&b->p, &place, isa_best(), &b->options, &b->report, &why), STATUS_OK);
+    const double r = (1.5 - 1.38 * 1.38) / (1.5 + 1.38 * 1.38), R = r * r;
+    assert_near(at(b, "ghosts", 2, 1.0, "weight"), (1.0 - R) * (1.0 - R) * R * R, 1e-16);
+    assert_near(at(b, "ghosts-sum", 0, 2.0, "weight"), (1.0 - R) * (1.0 - R) * R * R, 1e-16);
+    assert_near(at(b, "ghosts-sum", 0, 4.0, "weight"), (1.0 - R) * (1.0 - R) * R * R * R * R, 1e-18);
+    scene_destroy(s);
+    end(b);
+}
+
+/* A flat mirror behind a lens, tilted about X and Y, changes nothing but the place of the image. */
+static void a_folded_system_has_the_report_of_the_straight_one(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *section, *quantity;
+    } rows[] = {{"spot", "rms_centroid"},           {"spot", "geo"},      {"wavefront", "rms"},
+                {"vignetting", "passes"},           {"chief", "image_x"}, {"chief", "image_y"},
+                {"wavefront", "strehl_diffraction"}};
+    double value[2][8];
+    for (int folded = 0; folded < 2; folded++) {
+        bench *b = begin(LENS_APERTURE_PUPIL, 12.0);
+        b->options = (lens_options){.fan_rays = 4, .spot_grid = 16, .wave_grid = 16};
+        add(b, 60.0, 4.0, 1.6, 20.0);
+        add(b, -300.0, folded ? 40.0 : 88.0, 1.0, 20.0);
+        if (folded) {
+            lens_surface *mirror = add(b, 0.0, -48.0, -1.0, 60.0);
+            mirror->tilt_x_deg = 38.0, mirror->tilt_y_deg = -21.0;
+        }
+        b->p.field[0] = (lens_field){1.0, 3.0, 1.0};
+        b->p.field_count = 1;
+        make(b);
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+            value[folded][i] = at(b, rows[i].section, 0, NAN, rows[i].quantity);
+        value[folded][7] = at(b, "field-curves", 0, sqrt(10.0), "tangential");
+        end(b);
+    }
+    for (int i = 0; i < 8; i++)
+        assert_near(fabs(value[0][i]), fabs(value[1][i]), 1e-9 * (1.0 + fabs(value[0][i])));
+}
+
+/* A mirror behind glass: its wavefront is free of spherical aberration if all surfaces have the object's place as their
+ * centre, from which the light comes and to which it returns. */
+static void a_concentric_mangin_mirror_is_perfect(void **state)
+{
+    (void)state;
+    bench *b = begin(LENS_APERTURE_OBJECT, 0.2);
+    b->p.object_distance = 100.0;
+    add(b, -100.0, 6.0, 1.5, 60.0);
+    add(b, -106.0, -6.0, -1.0, 60.0)->medium = lens_medium_of_numbers(1.5, 0.0);
+    add(b, -100.0, -100.0, 1.0, 60.0);
+    b->p.field_kind = LENS_FIELD_OBJECT;
+    make(b);
+    assert_near(first(b, "magnification"), -1.0, 1e-12);
+    assert_near(at(b, "spot", 0, NAN, "geo"), 0.0, 1e-11);
+    assert_near(at(b, "wavefront", 0, NAN, "rms"), 0.0, 1e-8);
+    assert_near(at(b, "ghosts-sum", 0, 2.0, "omitted"), 3.0, 0.0);
+    end(b);
+}
+
 /* All rows but those of diffraction, whose waves are not scaled. */
 static void same_reports(const lens_report *a, const lens_report *b, double scale)
 {
@@ -540,6 +613,9 @@ int main(void)
         cmocka_unit_test(the_triplet_objective_has_optilands_distortion_and_focus),
         cmocka_unit_test(a_rim_takes_the_part_of_the_pupil_that_two_circles_leave),
         cmocka_unit_test(a_plate_has_one_ghost_with_fresnels_weight),
+        cmocka_unit_test(a_folded_system_has_the_report_of_the_straight_one),
+        cmocka_unit_test(a_concentric_mangin_mirror_is_perfect),
+        cmocka_unit_test(coated_ghosts_have_the_powers_of_their_layers),
         cmocka_unit_test(a_moved_turned_and_scaled_system_has_the_same_report),
         cmocka_unit_test(what_cannot_be_reported_says_why),
     };
