@@ -108,7 +108,7 @@ static void put_spot(lens_study *s, lens_row key, const spot_sum *sum, double la
     put(s->out, key, "geo", "mm", sum->weight > 0.0 ? sqrt(sum->most) : NAN);
     put(s->out, key, "centroid_x", "mm", x);
     put(s->out, key, "centroid_y", "mm", y);
-    /* The first zero of (2 J1(v) / v)^2 is at v = 3.8317 = pi 1.21967 (Hecht, Optics, 10.2.5). */
+    /* The first zero of (2 J1(v) / v)^2 is at v = 3.8317 = pi 1.21967 (Hecht, Optics, on the circular aperture). */
     put(s->out, key, "airy_radius", "mm", 1.2196698912665045 * lambda_nm * 1e-6 * s->first.working_number);
 }
 
@@ -223,7 +223,7 @@ status lens_images(lens_study *s, size_t field, diagnostic *why)
 /* --- along the field --- */
 
 /* Distances to the foci of a narrow pencil about a chief ray in a plane with the axis (Coddington's equations: Welford,
- * Aberrations of Optical Systems, 1986, 9.4), from the image's surface along the ray. */
+ * Aberrations of Optical Systems, on astigmatism), from the image's surface along the ray. */
 static void pencil_foci(const lens_model *m, const lens_beam *bundle, double *t, double *s)
 {
     const lens_ray *r = &bundle->chief;

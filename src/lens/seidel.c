@@ -1,5 +1,5 @@
 /* Aberrations of the third order and of colour by surface, and ghosts: images by light that two surfaces reflect.
- * Welford, Aberrations of Optical Systems, 1986, 8.6 (spherical surfaces), 8.8 (aspheric ones), 10.3 (colour). */
+ * Welford, Aberrations of Optical Systems, on Seidel sums, aspheric surfaces and chromatic aberration. */
 #include "lens/lens_private.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  *
  * Rays are aimed so that they sample the cosines of direction at the image uniformly: the pupil of the diffraction
  * integral in its Debye form, in which a ray with the optical path W and the direction d adds exp(2 pi i (n (d - d0)
- * . x / lambda - W)) at x (Born and Wolf, Principles of Optics, 8.8). Samples at the pupil's edge have the part of
+ * . x / lambda - W)) at x (Born and Wolf, Principles of Optics, ch. 8). Samples at the pupil's edge have the part of
  * their cell that lies within the stop. The point image is the square of this sum's transform, by KissFFT in single
  * precision (2^-24; errors below 1e-5 of the peak); the MTF is the transform of its line images, which the padding to
  * twice the pupil makes exact for the samples. */

@@ -10,36 +10,41 @@
 
 /* --- designs --- */
 
-#define MACLEOD "Macleod, Thin-Film Optical Filters, 4th ed., "
+#define MACLEOD "Macleod, Thin-Film Optical Filters, 4th ed., on "
 #define COMPUTED "; thicknesses by least squares with this table's indices"
 
 static const coating_design designs[] = {
-    {"ar-550", "mgf2 550/4", "one quarter-wave layer against reflection, on any glass", MACLEOD "3.1"},
+    {"ar-550", "mgf2 550/4", "one quarter-wave layer against reflection, on any glass",
+     MACLEOD "antireflection coatings"},
     {"v-550", "mgf2 127.5, ta2o5 15.7", "V-coat: no reflection at 550 nm, on crown glass of index 1.52",
-     MACLEOD "3.2" COMPUTED},
+     MACLEOD "antireflection coatings" COMPUTED},
     {"ar-visible", "mgf2 550/4, ta2o5 550/2, alumina 550/4",
-     "quarter-half-quarter against reflection from 430 to 700 nm, on glass of index 1.52", MACLEOD "3.4"},
+     "quarter-half-quarter against reflection from 430 to 700 nm, on glass of index 1.52",
+     MACLEOD "antireflection coatings"},
     {"ar-broad", "mgf2 96.4, ta2o5 127.9, mgf2 32, ta2o5 16.7",
-     "four layers against reflection from 420 to 680 nm, on glass of index 1.52", MACLEOD "3.5" COMPUTED},
+     "four layers against reflection from 420 to 680 nm, on glass of index 1.52",
+     MACLEOD "antireflection coatings" COMPUTED},
     {"mirror-550", "10x(tio2 550/4, fused-silica 550/4)",
-     "mirror of ten pairs of quarter-wave layers for 480 to 620 nm", MACLEOD "6.2"},
+     "mirror of ten pairs of quarter-wave layers for 480 to 620 nm", MACLEOD "high-reflectance coatings"},
     {"long-pass-555",
      "tio2 10.4, fused-silica 117.8, tio2 38.7, 5x(fused-silica 79.4, tio2 46), fused-silica 79.4, tio2 40.6, "
      "fused-silica 80.6, tio2 22.1",
-     "dichroic: reflects 430 to 530 nm and transmits 575 to 700 nm, on crown glass", MACLEOD "7.2" COMPUTED},
+     "dichroic: reflects 430 to 530 nm and transmits 575 to 700 nm, on crown glass", MACLEOD "edge filters" COMPUTED},
     {"short-pass-595",
      "fused-silica 63.7, tio2 73.7, fused-silica 128.7, 5x(tio2 72.8, fused-silica 118.5), tio2 72.8, "
      "fused-silica 128.4, tio2 85.4, fused-silica 150.9",
-     "dichroic: transmits 430 to 580 nm and reflects 615 to 720 nm, on crown glass", MACLEOD "7.2" COMPUTED},
+     "dichroic: transmits 430 to 580 nm and reflects 615 to 720 nm, on crown glass", MACLEOD "edge filters" COMPUTED},
     {"splitter-45", "tio2 52.5, fused-silica 100.3, tio2 97.3, fused-silica 31.9, tio2 11",
-     "halves unpolarised light at 45 degrees, 430 to 670 nm, on crown glass in air", MACLEOD "9.4" COMPUTED},
+     "halves unpolarised light at 45 degrees, 430 to 670 nm, on crown glass in air", MACLEOD "beam splitters" COMPUTED},
     {"polariser-cube", "5x(tio2 66.1, fused-silica 189.4), tio2 66.1",
      "MacNeille's polarising cube, between prisms of n-sf11: reflects s and transmits p at 45 degrees",
      "MacNeille, US patent 2403731 (1946); quarter waves of 550 nm at 45 degrees"},
-    {"aluminium-mirror", "fused-silica 550/2, aluminium 100", "aluminium, protected by half a wave", MACLEOD "5.2"},
+    {"aluminium-mirror", "fused-silica 550/2, aluminium 100", "aluminium, protected by half a wave",
+     MACLEOD "metallic reflectors"},
     {"aluminium-enhanced", "2x(tio2 550/4, mgf2 550/4), aluminium 100",
-     "aluminium, reflecting more by two pairs of quarter-wave layers", MACLEOD "5.2"},
-    {"silver-mirror", "fused-silica 550/2, silver 150", "silver, protected by half a wave", MACLEOD "5.2"},
+     "aluminium, reflecting more by two pairs of quarter-wave layers", MACLEOD "metallic reflectors"},
+    {"silver-mirror", "fused-silica 550/2, silver 150", "silver, protected by half a wave",
+     MACLEOD "metallic reflectors"},
 };
 
 size_t coating_designs_count(void)

@@ -241,7 +241,7 @@ static void a_parabola_has_no_spherical_aberration_and_the_coma_of_its_formula(v
     assert_near(at(b, "wavefront", 0, NAN, "strehl_diffraction"), 1.0, 1e-9);
     field(b, 0.01);
     make(b);
-    /* Tangential coma 3 f theta / (16 N^2) (Schroeder, Astronomical Optics, 5.3); both edges are off by it. */
+    /* Tangential coma 3 f theta / (16 N^2) (Schroeder, Astronomical Optics); both edges are off by it. */
     const double coma =
         0.5 * (at(b, "fan-tangential", 0, 1.0, "e_tangential") + at(b, "fan-tangential", 0, -1.0, "e_tangential"));
     const double formula = 3.0 * 200.0 * 0.01 * DEGREE / (16.0 * 8.0 * 8.0);
@@ -249,7 +249,7 @@ static void a_parabola_has_no_spherical_aberration_and_the_coma_of_its_formula(v
     end(b);
 }
 
-/* The wavefronts of real rays at a small aperture and a small field are those of the Seidel sums. Welford, 8.2. */
+/* The wavefronts of real rays at a small aperture and a small field are those of the Seidel sums. Welford. */
 static void seidel_sums_are_the_first_terms_of_real_wavefronts(void **state)
 {
     (void)state;
@@ -338,7 +338,7 @@ static void a_perfect_pupil_has_airys_image_and_its_mtf(void **state)
         assert_near(at(b, "mtf-diffraction", 0, f, "tangential"), closed, 1.5e-3);
         assert_near(at(b, "mtf-diffraction", 0, f, "sagittal"), closed, 1.5e-3);
     }
-    /* (2 J1(v) / v)^2: 0.8378 of the light is within the first zero, 0.910 within the second (Born and Wolf, 8.5.2). */
+    /* (2 J1(v) / v)^2: 0.8378 of the light is within the first zero, 0.910 within the second (Born and Wolf, ch. 8). */
     const double airy = at(b, "spot", 0, NAN, "airy_radius");
     assert_near(at(b, "encircled", 0, airy, "fraction"), 0.8378, 1e-3);
     int points = 0;
@@ -367,7 +367,7 @@ static void a_known_defocus_has_the_strehl_ratio_of_its_sinc(void **state)
         const double waves = 0.25 * k * 200.0 / (200.0 - shift);
         b->p.surface[0].thickness += shift;
         make(b);
-        /* Born and Wolf, 8.8.2: (sin(pi W) / (pi W))^2 at the middle. */
+        /* Born and Wolf, ch. 8: (sin(pi W) / (pi W))^2 at the middle. */
         const double closed = pow(sin(M_PI * waves) / (M_PI * waves), 2);
         assert_near(at(b, "wavefront", 0, NAN, "strehl_diffraction"), closed, 3e-4);
         assert_near(at(b, "wavefront", 0, NAN, "pv"), waves, 5e-3 * waves);
