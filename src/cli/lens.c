@@ -7,6 +7,7 @@
 #include "cli/terminal.h"
 #include "scene/file/write.h"
 #include "scene/lens/lens_prescription.h"
+#include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -112,24 +113,31 @@ static void print_prescription(const lens_prescription *p)
 
 /* --- reading and writing --- */
 
-static status read_scene(const lens_request *request, lens_prescription *out, diagnostic *why)
+static status read_scene(const lens_request *request, lens_prescription *out, scene **s, diagnostic *why)
 {
     const scene_input input = {.path = request->path};
-    scene *s = NULL;
-    status code = scene_input_read(&input, &s, why);
-    THEN(code, scene_input_load(s, why));
-    if (code == STATUS_OK)
-        code = locate_failure(why, request->path, lens_of_scene(s, request->system, out, NULL, why));
-    scene_destroy(s);
-    return code;
+    TRY(scene_input_read(&input, s, why));
+    TRY(scene_input_load(*s, why));
+    return locate_failure(why, request->path, lens_of_scene(*s, request->system, out, NULL, why));
 }
 
+/* The files of the scene's data, by which its media are written. The caller frees the list and its texts. */
+static status files_of_data(const scene *s, char ***out, diagnostic *why)
+{
+    *out = calloc(s->data_count + 1, sizeof **out);
+    for (size_t i = 0; *out && i < s->data_count; i++)
+        if (!((*out)[i] = scene_file_path(s, s->data[i].path ? s->data[i].path : "")))
+            return out_of_memory(why);
+    return *out ? STATUS_OK : out_of_memory(why);
+}
+
+/* *s: the scene whose data the media of the prescription borrow, also after an error; NULL for a file. */
 static status read_prescription(const lens_request *request, const lens_glasses *glasses, lens_prescription *out,
-                                diagnostic *why)
+                                scene **s, diagnostic *why)
 {
     *out = lens_prescription_empty();
     if (!lens_file_named(request->path))
-        return read_scene(request, out, why);
+        return read_scene(request, out, s, why);
     if (request->system)
         return options_wrong("--system", request->system, why, "omit it", "a lens file holds one system");
     TRY(lens_file_read(request->path, glasses, out, why));
@@ -162,6 +170,24 @@ static status write_scene(const lens_prescription *p, const lens_glasses *glasse
     return code;
 }
 
+static status write(const lens_prescription *p, const scene *source, const lens_glasses *glasses, const char *path,
+                    bool as_scene, diagnostic *why)
+{
+    const lens_text text = {p, path};
+    char **file = NULL;
+    if (!as_scene)
+        return outputs_write_text(path, write_text, &text, why);
+    if (!source)
+        return write_scene(p, glasses, path, why);
+    status code = files_of_data(source, &file, why);
+    const lens_glasses own = {(const char *const *)file, source->data_count, NULL};
+    THEN(code, write_scene(p, &own, path, why));
+    for (size_t i = 0; file && i < source->data_count; i++)
+        free(file[i]);
+    free(file);
+    return code;
+}
+
 static status run(const lens_request *request, diagnostic *why)
 {
     static const char *const endings[] = {".yaml", ".yml", ".zmx", ".dat", ".csv"};
@@ -175,17 +201,14 @@ static status run(const lens_request *request, diagnostic *why)
         if (outputs_same_entry(request->path, request->output))
             return options_wrong("-o", request->output, why, "write to another file", "it is the file that is read");
     }
-    TRY(read_prescription(request, &glasses, &p, why));
-    status code = STATUS_OK;
-    if (!request->output) {
+    scene *source = NULL;
+    status code = read_prescription(request, &glasses, &p, &source, why);
+    if (code == STATUS_OK && !request->output)
         print_prescription(&p);
-    } else if (ending < 2) {
-        code = locate_failure(why, request->path, write_scene(&p, &glasses, request->output, why));
-    } else {
-        const lens_text text = {&p, request->output};
-        code = locate_failure(why, request->path, outputs_write_text(request->output, write_text, &text, why));
-    }
+    else if (code == STATUS_OK)
+        code = locate_failure(why, request->path, write(&p, source, &glasses, request->output, ending < 2, why));
     lens_prescription_release(&p);
+    scene_destroy(source);
     return code;
 }
 

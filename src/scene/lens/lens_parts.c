@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #define RING_THICKNESS 1e-4 /* of stops and mounts, of a diameter */
 
@@ -40,9 +41,14 @@ static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
     snprintf(name, sizeof name, "%.60s-n", owner);
     if (!lens_has(b->t.s, PARAM_DATA, name)) {
         THEN(b->t.code, scene_add(b->t.s, PARAM_DATA, name, NULL, b->t.why));
-        if (b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count)
-            lens_put(&b->t, name, "file", "%s", b->at->glasses->file[m->glass_file]);
-        lens_put(&b->t, name, "glass", "%s", m->name);
+        const bool known = b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count;
+        const char *file = known ? b->at->glasses->file[m->glass_file] : "";
+        if (known)
+            lens_put(&b->t, name, "file", "%s", file);
+        if (!known || (strlen(file) > 4 && strcasecmp(file + strlen(file) - 4, ".agf") == 0))
+            lens_put(&b->t, name, "glass", "%s", m->name);
+        if (!m->law.relative_to_air)
+            lens_put(&b->t, name, "relative_to", "vacuum");
     }
     lens_put(&b->t, owner, "medium", "data");
     lens_put(&b->t, owner, "medium_data", "%s", name);
@@ -131,6 +137,11 @@ status lens_medium_of(const scene *s, const solid *of, lens_medium *out, diagnos
                         "the surroundings are %s", surroundings);
     out->around = surroundings ? 0.0 : around->ior;
     TRY(material_index_law(m, of->name, &out->law, why));
+    if (out->law.data && optical_data_law(out->law.data)) { /* a formula outlives the scene */
+        out->law.law = *optical_data_law(out->law.data);
+        out->law.data = NULL;
+        out->kind = LENS_DATA;
+    }
     out->n_d = lens_tidy(lens_medium_index(out, LINE_HELIUM_D_NM));
     const double F = lens_medium_index(out, LINE_HYDROGEN_F_NM), C = lens_medium_index(out, LINE_HYDROGEN_C_NM);
     out->V_d = F != C ? lens_tidy((out->n_d - 1.0) / (F - C)) : 0.0;
@@ -140,9 +151,12 @@ status lens_medium_of(const scene *s, const solid *of, lens_medium *out, diagnos
     } else if (m->medium == MEDIUM_DATA) {
         out->kind = LENS_DATA;
         snprintf(out->name, sizeof out->name, "%s", m->medium_data);
-        for (size_t i = 0; i < s->data_count; i++)
-            if (strcmp(s->data[i].name, m->medium_data) == 0 && s->data[i].glass[0])
-                snprintf(out->name, sizeof out->name, "%s", s->data[i].glass);
+        const int at = object_find(s, PARAM_DATA, m->medium_data);
+        const data_entry *d = at >= 0 ? &s->data[at] : NULL;
+        if (d && d->glass[0])
+            snprintf(out->name, sizeof out->name, "%s", d->glass);
+        if (d && !d->column[0] && d->scale == 1.0)
+            out->glass_file = at;
     } else if (out->V_d > 0.0) {
         out->kind = LENS_MODEL;
     }

@@ -26,10 +26,19 @@ void lens_prescription_release(lens_prescription *p)
     p->count = 0;
 }
 
+/* Data of a file keep the index of the ends of their range (optical_data_at). */
+static double within_range(const lens_medium *m, double lambda_nm)
+{
+    const dispersion *law = &m->law.law;
+    return m->kind == LENS_DATA && law->high_nm > 0.0 ? fmin(fmax(lambda_nm, law->low_nm), law->high_nm) : lambda_nm;
+}
+
 double lens_medium_index(const lens_medium *m, double lambda_nm)
 {
     if (m->kind == LENS_AIR)
         return 1.0;
+    if (!m->law.data)
+        lambda_nm = within_range(m, lambda_nm);
     if (m->around > 0.0)
         return index_law_at(&m->law, lambda_nm) / m->around;
     const double n = m->law.data ? optical_data_at(m->law.data, lambda_nm) : dispersion_index(&m->law.law, lambda_nm);

@@ -30,10 +30,10 @@ typedef enum lens_medium_kind {
 typedef struct lens_medium {
     lens_medium_kind kind;
     char name[LENS_NAME_MAX]; /* as the file writes it; "" for none */
-    int glass_file;           /* LENS_DATA: its catalogue file (lens_glasses); -1: an entry of the scene's data */
+    int glass_file;           /* LENS_DATA: its file among lens_glasses; of a scene, its entry of the data; or -1 */
     double n_d, V_d;          /* for LENS_MODEL, and where a file states them; V_d is 0 for none */
     index_law law;            /* by which lens_medium_index computes the index; not for LENS_AIR. Of a glass in a
-                                 catalogue file: by its n_d and V_d, until the scene has loaded its data */
+                                 catalogue file: its formula, the same as that of the scene's data */
     double around;            /* index of the surroundings if they are not air; 0: air */
 } lens_medium;
 

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "scene/assets/optical_files.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -130,6 +131,20 @@ static bool find_in_catalogue(const char *word, lens_medium *out)
     return true;
 }
 
+/* The medium of a glass in the text of a catalogue: its formula, and n_d and V_d as stated. */
+static status glass_of_text(const char *path, const char *text, size_t size, const char *name, double n_d, double V_d,
+                            lens_medium *out, diagnostic *why)
+{
+    const optical_file_choice choice = {.glass = name, .column = "", .scale = 1.0};
+    const optical_data *data;
+    TRY(optical_file_parse(path, text, size, &choice, &data, why));
+    *out = (lens_medium){.kind = LENS_DATA, .n_d = n_d, .V_d = fmax(V_d, 0.0)};
+    out->law = (index_law){.law = *optical_data_law(data), .relative_to_air = true};
+    snprintf(out->name, sizeof out->name, "%s", name);
+    optical_data_release(data);
+    return STATUS_OK;
+}
+
 /* A line "NM name formula code n_d V_d ..." of the file with that name. */
 static status find_in_file(const char *path, const char *root, const char *word, lens_medium *out, bool *found,
                            diagnostic *why)
@@ -138,20 +153,17 @@ static status find_in_file(const char *path, const char *root, const char *word,
     size_t size;
     TRY(file_read_below(path, root, GLASS_BYTES_MAX, &text, &size, why));
     char *plain = text_narrow(text, size), *rest = plain;
-    free(text);
-    if (!plain)
-        return out_of_memory(why);
+    status code = plain ? STATUS_OK : out_of_memory(why);
     double n_d, V_d;
-    for (char *line = strsep(&rest, "\n"); line && !*found; line = strsep(&rest, "\n"))
+    for (char *line; !*found && code == STATUS_OK && (line = strsep(&rest, "\n"));)
         if (sscanf(line, "NM %63s %*s %*s %31s %31s", name, n, V) == 3 && strcasecmp(name, word) == 0 &&
             number_parse_real(n, &n_d) && number_parse_real(V, &V_d) && n_d > 0.0) {
-            *out = lens_medium_of_numbers(n_d, fmax(V_d, 0.0));
-            out->kind = LENS_DATA;
-            snprintf(out->name, sizeof out->name, "%s", name);
+            code = glass_of_text(path, text, size, name, n_d, V_d, out, why);
             *found = true;
         }
     free(plain);
-    return STATUS_OK;
+    free(text);
+    return code;
 }
 
 /* n/V, a six-digit glass code (517642: n_d 1.517, V_d 64.2; MIL-G-174), or n. */

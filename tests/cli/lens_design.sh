@@ -1,0 +1,37 @@
+#!/bin/bash
+# A lens of catalogue glasses through files, scenes and reports: one index for all rays, what a scene keeps of a lens,
+# and transmission. Wanted values are those of lens_design.py: lens_design.sh [PROGRAM].
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-design.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
+lens() { "$program" lens "$@"; }
+wanted() { python3 "$root/tests/cli/lens_design.py" "$@"; }
+quick=(--spot 8 --wave 16 --fan 4 --csv)
+wanted write
+
+# --- one index for paraxial and real rays, from each form of the lens
+axial() { awk -F, '$1 == "axial-colour" && $6 == "efl" { efl[$4] = $7 } $1 == "axial-colour" && $6 == "focus" { f[$4] = $7 }
+    END { for (nm in f) printf "%.4f %.7f %.7f\n", nm, efl[nm], f[nm] }' | sort; }
+lens gauss.zmx -g glass.agf -o gauss.yaml >/dev/null && lens gauss.zmx -g glass.agf -o gauss.csv >/dev/null
+lens report gauss.zmx -g glass.agf "${quick[@]}" >zmx.rows
+equal "paraxial foci of a .zmx file are those of its catalogue's formulas" "$(axial <zmx.rows)" "$(wanted paraxial)"
+equal "and those of a .csv file" "$(lens report gauss.csv -g glass.agf "${quick[@]}" | axial)" "$(wanted paraxial)"
+# Near the axis real rays go to the paraxial focus, by the square of their height.
+awk -F, '$1 == "longitudinal" { f[$4, $5 + 0] = $7; at[$4] } END {
+    for (nm in at) { a = f[nm, 0.05] - f[nm, 0]; b = f[nm, 0.1] - f[nm, 0]; worse += b / a < 3.95 || b / a > 4.05 }
+    exit worse > 0 || length(at) != 3 }' zmx.rows
+verdict $? "real rays go on where paraxial ones begin" "$(grep '^longitudinal' zmx.rows | head -n 4)"
+focal() { lens "$@" | awk '/focal length/ { printf "%.7f", $3 }'; }
+d=$(wanted paraxial | awk 'NR == 2 { print $2 }')
+equal "the table of a file" "$(focal gauss.zmx -g glass.agf)" "$(printf '%.6f0' "$d")"
+equal "the table of a scene" "$(focal gauss.yaml)" "$(focal gauss.zmx -g glass.agf)"
+lens gauss.yaml -o again.yaml >/dev/null && lens again.yaml -o again.zmx >/dev/null
+equal "a scene of the scene, and a file of that" "$(focal again.yaml) $(focal again.zmx -g glass.agf)" "$(focal gauss.yaml) $(focal gauss.yaml)"
+conclude
