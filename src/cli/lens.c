@@ -140,13 +140,7 @@ static status read_prescription(const lens_request *request, const lens_glasses 
         return read_scene(request, out, s, why);
     if (request->system)
         return options_wrong("--system", request->system, why, "omit it", "a lens file holds one system");
-    TRY(lens_file_read(request->path, glasses, out, why));
-    if (out->note[0]) {
-        char text[sizeof out->note + 300];
-        snprintf(text, sizeof text, "%.250s: %s", request->path, out->note);
-        terminal_note(text);
-    }
-    return STATUS_OK;
+    return lens_file_read(request->path, glasses, out, why);
 }
 
 typedef struct lens_text {
@@ -203,6 +197,8 @@ static status run(const lens_request *request, diagnostic *why)
     }
     scene *source = NULL;
     status code = read_prescription(request, &glasses, &p, &source, why);
+    if (code == STATUS_OK)
+        terminal_note_of(request->path, p.note);
     if (code == STATUS_OK && !request->output)
         print_prescription(&p);
     else if (code == STATUS_OK)

@@ -210,6 +210,8 @@ static status report_on(report_request *r, diagnostic *why)
         p.field[i] = (lens_field){0.0, r->field[i], 1.0};
     p.field_count = r->field_count ? r->field_count : p.field_count;
     THEN(code, lens_report_make(&p, &place, level, &r->options, &report, why));
+    if (code == STATUS_OK)
+        terminal_note_of(r->path, p.note);
     THEN(code, write_report(r, &p, &report, p.title[0] ? p.title : r->path, why));
     lens_report_release(&report);
     lens_prescription_release(&p);

@@ -179,6 +179,14 @@ void terminal_note(const char *text)
     fprintf(stderr, "%scuvette: note:%s %s\n", color ? "\033[1m" : "", color ? "\033[0m" : "", text);
 }
 
+void terminal_note_of(const char *path, const char *text)
+{
+    char line[1024];
+    snprintf(line, sizeof line, "%.250s: %.700s", path, text);
+    if (text[0])
+        terminal_note(line);
+}
+
 void progress_start(progress_line *line, const char *label)
 {
     *line = (progress_line){.label = label, .started_s = clock_wall_s(), .enabled = terminal_is_smart(STDERR_FILENO)};

@@ -31,6 +31,8 @@ void terminal_error(const diagnostic *why);
 
 /* Prints "cuvette: note: ..." as one line on standard error. */
 void terminal_note(const char *text);
+/* The same, about a file; nothing for an empty text. */
+void terminal_note_of(const char *path, const char *text);
 
 /* A progress line with the time left, on standard error if that is a terminal. Work of less than half a second shows
  * none. Ownership: the label is borrowed. */

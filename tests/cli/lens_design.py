@@ -32,7 +32,7 @@ def index(glass, nm):
     return math.sqrt(1.0 + sum(c[i] * q / (q - c[i + 1]) for i in (0, 2, 4)))
 
 
-def write(stop=True):
+def write(stop="STOP"):
     with open('glass.agf', 'w') as out:
         print('CC glasses', file=out)
         for name, (n, V, c) in GLASS.items():

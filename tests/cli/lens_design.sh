@@ -34,4 +34,18 @@ equal "the table of a file" "$(focal gauss.zmx -g glass.agf)" "$(printf '%.6f0' 
 equal "the table of a scene" "$(focal gauss.yaml)" "$(focal gauss.zmx -g glass.agf)"
 lens gauss.yaml -o again.yaml >/dev/null && lens again.yaml -o again.zmx >/dev/null
 equal "a scene of the scene, and a file of that" "$(focal again.yaml) $(focal again.zmx -g glass.agf)" "$(focal gauss.yaml) $(focal gauss.yaml)"
+
+# --- a missing stop: one rule, in one note
+wanted write '' && sed -i 's/ENPD.*/ENPD 20/' nostop.zmx
+lens nostop.zmx -g glass.agf >table 2>said
+lens report nostop.zmx -g glass.agf "${quick[@]}" >rows 2>said.report
+cmp -s said said.report && grep -q 'no stop is stated: it is surface 6,' said && (($(wc -l <said) == 1))
+verdict $? "both commands name the surface that is taken" "$(cat said said.report)"
+row() { awk -F, -v q="$1" '$1 == "first-order" && $6 == q { printf "%.6f", $7 }' "$2"; }
+equal "and take the same" "$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' table)" \
+    "$(row z_entrance_pupil rows) $(row entrance_pupil rows)"
+lens nostop.zmx -g glass.agf -o nostop.yaml 2>said.scene >/dev/null
+lens nostop.yaml 2>said.again | sed -n '/^paraxial/,$p' >again
+equal "a scene has that stop, and says no more" "$(cat said.again)$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' again)" \
+    "$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' table)"
 conclude

@@ -1,6 +1,7 @@
 /* Media, surfaces and paraxial properties of a lens prescription (lens_prescription.h). */
 #include "scene/lens/lens_prescription.h"
 #include "geometry/primitives/asphere.h"
+#include "scene/lens/lens_reader.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -190,6 +191,10 @@ void lens_prescription_complete(lens_prescription *p)
     if (p->count == 0)
         return;
     const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    if (p->stop < 0)
+        lens_note(p, "no stop is stated: it is surface %d, which a beam on the axis fills first", f.stop + 1);
+    if (p->stop < 0 && p->aperture_kind != LENS_APERTURE_STOP)
+        p->stop = f.stop; /* a stated aperture needs one in a scene, too */
     for (size_t i = 0; i < p->count; i++) {
         lens_surface *s = &p->surface[i];
         /* of wide fields, paraxial rays are farther out than the surface reaches */

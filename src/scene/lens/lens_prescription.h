@@ -93,7 +93,7 @@ typedef struct lens_prescription {
     lens_wavelength wavelength[LENS_LIST_MAX];
     size_t wavelength_count; /* at least 1: 587.5618 nm */
     size_t primary;          /* index of the primary wavelength */
-    char note[512];          /* what of the file was not read; "" for nothing */
+    char note[512];          /* what of the file was not read, or was assumed; "" for nothing */
 } lens_prescription;
 
 /* Without surfaces: mm, object at infinity, in air, on the axis, at 587.5618 nm. */
@@ -151,7 +151,8 @@ typedef struct lens_first_order {
 /* Pure. */
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
 
-/* Fills what the file leaves open: clear diameters from the paraxial rays of axis and outermost field (never below
+/* Fills what the file leaves open, with a note: the stop, which is the surface that a beam on the axis fills first (it
+ * stays -1 where that surface's own edge is the aperture); clear diameters from the paraxial rays of axis and outermost field (never below
  * what the beam needs at the stop), and the distance of the image if the last thickness is 0. */
 void lens_prescription_complete(lens_prescription *p);
 
