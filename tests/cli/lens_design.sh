@@ -35,6 +35,31 @@ equal "the table of a scene" "$(focal gauss.yaml)" "$(focal gauss.zmx -g glass.a
 lens gauss.yaml -o again.yaml >/dev/null && lens again.yaml -o again.zmx >/dev/null
 equal "a scene of the scene, and a file of that" "$(focal again.yaml) $(focal again.zmx -g glass.agf)" "$(focal gauss.yaml) $(focal gauss.yaml)"
 
+# --- a scene keeps fields, wavelengths with their weights, the primary one and the aperture
+lens report gauss.yaml "${quick[@]}" >yaml.rows
+differ() { # FILE FILE: the largest relative difference of values, and the number of rows that one of them lacks
+    awk -F, 'FNR == 1 { file++; next } { key = $1 FS $2 FS $3 FS sprintf("%.7f", $4) FS sprintf("%.9f", $5) FS $6 }
+        file == 1 { of[key] = $7; next } !(key in of) { lacks++; next }
+        { d = $7 - of[key]; s = $7 * $7 + of[key] * of[key] + 1e-6; if (d * d / s > most) most = d * d / s; delete of[key] }
+        END { print (sqrt(most) < 1e-6 ? "same" : sqrt(most)), lacks + length(of) }' "$1" "$2"
+}
+equal "the report of a scene is that of its file" "$(differ zmx.rows yaml.rows)" "same 0"
+facts() { awk '/^(ENPD|OBNA|FTYP|XFLN|YFLN|WAVM|PWAV)/ { if ($1 == "WAVM") $3 = sprintf("%.7f", $3); $1 = $1; print }' "$1"; }
+equal "a file of the scene has them all" "$(facts again.zmx)" "ENPD 33.33 0
+FTYP 0 0 3 3 0 0 0
+XFLN 0 0 0
+YFLN 0 10 14
+WAVM 1 0.4861327 0.7
+WAVM 2 0.5875618 1
+WAVM 3 0.6562725 0.4
+PWAV 2"
+printf 'object_distance,200\npupil,20\nfield_height,0,10,20\n' >near.csv
+grep -vE '^(pupil|field|title)' gauss.csv >>near.csv
+lens near.csv -g glass.agf -o near.yaml >/dev/null && lens near.yaml -o back.csv
+equal "also of a near object" "$(grep -E '^(object|pupil|field)' back.csv)" "object_distance,200
+pupil,20
+field_height,0,10,20"
+
 # --- a missing stop: one rule, in one note
 wanted write '' && sed -i 's/ENPD.*/ENPD 20/' nostop.zmx
 lens nostop.zmx -g glass.agf >table 2>said

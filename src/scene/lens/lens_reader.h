@@ -88,8 +88,8 @@ bool lens_has(const scene *s, param_group group, const char *name);
 bool lens_belongs(const char *system, const char *name);
 /* Twelve digits, so that a product that was divided again is the published number. */
 double lens_tidy(double x);
-/* The fields and wavelengths of the system's beams; rotation_deg: of its first solid. */
-void lens_read_beams(const scene *s, const char *system, vec3 rotation_deg, lens_prescription *p);
+/* The fields, wavelengths, distance of the object and aperture of the system's beams; at: its first surface. */
+void lens_read_beams(const scene *s, const char *system, const lens_placement *at, lens_prescription *p);
 
 /* --- a system in a scene: lens_scene.c; its surfaces in the order of the light: lens_folds.c --- */
 

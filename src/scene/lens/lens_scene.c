@@ -221,12 +221,13 @@ status lens_of_scene(const scene *s, const char *name, lens_prescription *out, l
             code = read_stop(f);
     }
     if (code == STATUS_OK) {
-        lens_read_beams(s, f->name, f->lens[0].of->shape.rotation_deg, out);
+        const lens_placement place = placement_found(f);
+        lens_read_beams(s, f->name, &place, out);
         lens_prescription_complete(out);
         if (f->mirrors && out->stop < 0) /* the rim of a mirror, which has no solid */
             out->stop = lens_first_order_of(out, out->wavelength[0].nm).stop;
         if (at)
-            *at = placement_found(f);
+            *at = place;
     } else {
         lens_prescription_release(out);
     }

@@ -27,13 +27,14 @@ typedef struct setup {
     lens_target t;
     const lens_prescription *p;
     lens_first_order f;
-    double length;   /* from the first vertex to the image */
-    vec3 at, axis;   /* the image on the axis, and its direction there, which mirrors fold */
-    double distance; /* of the object */
-    double object;   /* half height of the object */
-    double image;    /* half height of the image */
-    double cone;     /* radius of the camera's aperture */
-    double leader;   /* height of the first element */
+    double length;          /* from the first vertex to the image */
+    vec3 at, axis;          /* the image on the axis, and its direction there, which mirrors fold */
+    double distance;        /* of the object that the camera sees */
+    double object_distance; /* of the prescription */
+    double object;          /* half height of the object */
+    double image;           /* half height of the image */
+    double cone;            /* radius of the camera's aperture */
+    double leader;          /* height of the first element */
 } setup;
 
 static void set_render(setup *u)
@@ -131,41 +132,57 @@ static void add_board(setup *u)
     lens_put(t, "board", "priority", "-1");
 }
 
-static void add_field_beam(setup *u, const char *name, size_t i)
+/* Parallel light from a far object, a pencil from the point of a near one; both fill the entrance pupil. */
+static void add_field_beam(setup *u, const char *name, size_t i, const lens_wavelength *w)
 {
     lens_target *t = &u->t;
     const lens_prescription *p = u->p;
+    const bool far = isinf(u->object_distance);
     const double rad = 0.017453292519943295769, pupil = u->f.pupil,
-                 start = -fmax(0.5 * fabs(u->f.efl), pupil < 0.0 ? -1.2 * pupil : 0.0);
+                 start = far ? -fmax(0.5 * fabs(u->f.efl), pupil < 0.0 ? -1.2 * pupil : 0.0) : -u->object_distance;
     const bool angles = p->field_kind == LENS_FIELD_ANGLE;
     const double reach = p->object_distance + pupil,
                  slope_x = angles ? tan(p->field[i].x * rad) : -p->field[i].x / reach,
                  slope_y = angles ? tan(p->field[i].y * rad) : -p->field[i].y / reach;
     /* towards the centre of the entrance pupil, in the frame of the first element: +y along the light, fields of +y
      * towards -z */
-    lens_put(t, name, "kind", "bundle");
+    lens_put(t, name, "kind", far ? "bundle" : "pencil");
     lens_put(t, name, "follows", "%s", SYSTEM);
     lens_put(t, name, "direction", "%.17g,1,%.17g", slope_x + 0.0, 0.0 - slope_y);
     lens_put(t, name, "position", "%.17g,%.17g,%.17g", slope_x * (start - pupil) + 0.0, start - u->leader,
              0.0 - slope_y * (start - pupil));
-    lens_put_number(t, name, "width", u->f.pupil_diameter);
+    if (far)
+        lens_put_number(t, name, "width", u->f.pupil_diameter);
+    else
+        lens_put_number(
+            t, name, "angle_deg",
+            2.0 / rad * atan2(0.5 * u->f.pupil_diameter, reach * sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)));
     lens_put(t, name, "rays", "61");
     lens_put(t, name, "branches", "off");
     lens_put(t, name, "depth", "64");
-    lens_put_number(t, name, "lambda_nm", p->wavelength[p->primary].nm);
+    lens_put_number(t, name, "lambda_nm", w->nm);
+    lens_put_number(t, name, "power", w->weight);
     lens_put(t, name, "visible", "off");
 }
 
+/* Of the primary wavelength, then of the others by their place in the list: lens_read_beams. */
 static void add_beams(setup *u)
 {
-    char name[32];
+    char name[48];
+    const lens_prescription *p = u->p;
     const int leader = scene_find_solid(u->t.s, SYSTEM);
     u->leader = leader >= 0 ? u->t.s->solids[leader].shape.position.z : 0.0;
-    for (size_t i = 0; i < u->p->field_count; i++) {
-        snprintf(name, sizeof name, SYSTEM "-field-%zu", i + 1);
-        THEN(u->t.code, scene_add(u->t.s, PARAM_BEAM, name, NULL, u->t.why));
-        add_field_beam(u, name, i);
-    }
+    for (size_t i = 0; i < p->field_count; i++)
+        for (size_t k = 0; k <= p->wavelength_count; k++) {
+            const size_t w = k ? k - 1 : p->primary;
+            if (k && w == p->primary)
+                continue;
+            const int used = snprintf(name, sizeof name, SYSTEM "-field-%zu", i + 1);
+            if (k)
+                snprintf(name + used, sizeof name - (size_t)used, "-line-%zu", k);
+            THEN(u->t.code, scene_add(u->t.s, PARAM_BEAM, name, NULL, u->t.why));
+            add_field_beam(u, name, i, &p->wavelength[w]);
+        }
 }
 
 static setup measured(scene *s, const lens_prescription *p, lens_prescription *focused, diagnostic *why)
@@ -173,6 +190,7 @@ static setup measured(scene *s, const lens_prescription *p, lens_prescription *f
     setup u = {.t = {s, STATUS_OK, why}, .p = focused};
     const lens_first_order far = lens_first_order_of(p, p->wavelength[p->primary].nm);
     *focused = *p;
+    u.object_distance = p->object_distance;
     if (!isfinite(focused->object_distance))
         focused->object_distance = rounded(fmin(1e5, 50.0 * fabs(far.efl)), 3);
     u.distance = focused->object_distance;
@@ -250,32 +268,92 @@ static void add_field(lens_prescription *p, double x, double y)
         p->field[p->field_count++] = (lens_field){x, y, 1.0};
 }
 
-static void add_wavelength(lens_prescription *p, double nm)
+typedef struct ranked_wave {
+    lens_wavelength of;
+    long rank; /* place in the list, from 1; 0: by the order of the beams */
+} ranked_wave;
+
+static size_t add_wavelength(ranked_wave *list, size_t count, const beam *b)
 {
-    for (size_t i = 0; i < p->wavelength_count; i++)
-        if (p->wavelength[i].nm == nm)
-            return;
-    if (p->wavelength_count < LENS_LIST_MAX)
-        p->wavelength[p->wavelength_count++] = (lens_wavelength){nm, 1.0};
+    const char *line = strstr(b->name, "-line-");
+    for (size_t i = 0; i < count; i++)
+        if (list[i].of.nm == b->lambda_nm)
+            return count;
+    if (count < LENS_LIST_MAX)
+        list[count++] = (ranked_wave){{b->lambda_nm, b->power}, line ? strtol(line + 6, NULL, 10) : 0};
+    return count;
 }
 
-void lens_read_beams(const scene *s, const char *system, vec3 rotation_deg, lens_prescription *p)
+/* The first beam has the primary wavelength, whose place is that which the others leave. */
+static void order_wavelengths(ranked_wave *list, size_t count, lens_prescription *p)
+{
+    bool used[LENS_LIST_MAX + 2] = {false};
+    long free_rank = 1;
+    for (size_t i = 1; i < count; i++)
+        if (list[i].rank > 0 && list[i].rank <= LENS_LIST_MAX)
+            used[list[i].rank] = true;
+    while (used[free_rank])
+        free_rank++;
+    for (size_t i = 0; i < count; i++)
+        list[i].rank = i == 0 ? free_rank : list[i].rank > 0 ? list[i].rank : LENS_LIST_MAX + (long)i;
+    const double primary = list[0].of.nm;
+    for (size_t i = 1; i < count; i++)
+        for (size_t k = i; k > 0 && list[k].rank < list[k - 1].rank; k--) {
+            const ranked_wave moved = list[k];
+            list[k] = list[k - 1], list[k - 1] = moved;
+        }
+    for (size_t i = 0; i < count; i++) {
+        p->wavelength[i] = list[i].of;
+        if (list[i].of.nm == primary)
+            p->primary = i;
+    }
+    p->wavelength_count = count;
+}
+
+/* The point of a near object that a pencil starts at: its height is the field, its distance that of the object. */
+static void add_object_point(vec3 local, lens_prescription *p)
+{
+    if (p->field_count == 0)
+        p->object_distance = lens_tidy(-local.y), p->field_kind = LENS_FIELD_OBJECT;
+    add_field(p, lens_tidy(local.x) + 0.0, lens_tidy(-local.z) + 0.0);
+}
+
+/* The aperture is the diameter of the entrance pupil that the first beam fills, if it is that of the stop's solid. */
+static void read_aperture(lens_prescription *p, const beam *b)
+{
+    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const double away = p->object_distance + f.pupil, tilt = hypot(p->field[0].x, p->field[0].y);
+    const double pupil =
+        b->kind == BEAM_BUNDLE ? b->width : 2.0 * hypot(away, tilt) * tan(0.5 * 0.017453292519943295769 * b->angle_deg);
+    if (p->stop >= 0 && fabs(pupil - f.pupil_diameter) <= 1e-9 * pupil)
+        p->aperture_kind = LENS_APERTURE_PUPIL, p->aperture = lens_tidy(pupil);
+}
+
+void lens_read_beams(const scene *s, const char *system, const lens_placement *at, lens_prescription *p)
 {
     const double deg = 57.295779513082320877;
-    const mat3 turn = rotation_from_deg(rotation_deg);
-    p->field_count = p->wavelength_count = 0;
+    const mat3 turn = rotation_from_deg(at->rotation_deg);
+    ranked_wave waves[LENS_LIST_MAX];
+    size_t count = 0;
+    const beam *first = NULL;
+    p->field_count = 0;
     for (size_t i = 0; i < s->beam_count; i++) {
         const beam *b = &s->beams[i];
-        if (!lens_belongs(system, b->name) || !strstr(b->name, "-field-") || !beam_is_parallel(b))
-            continue;
         const vec3 d = mat3_apply_transposed(turn, beam_axis(b));
-        if (!(d.y > 0.0))
+        if (!lens_belongs(system, b->name) || !strstr(b->name, "-field-") || !(d.y > 0.0) || b->kind == BEAM_FAN)
             continue;
-        add_field(p, lens_tidy(deg * atan2(d.x, d.y)) + 0.0, lens_tidy(deg * atan2(-d.z, d.y)) + 0.0);
-        add_wavelength(p, b->lambda_nm);
+        if (beam_is_parallel(b) && p->field_kind == LENS_FIELD_ANGLE)
+            add_field(p, lens_tidy(deg * atan2(d.x, d.y)) + 0.0, lens_tidy(deg * atan2(-d.z, d.y)) + 0.0);
+        else if (b->kind == BEAM_PENCIL && (p->field_count == 0 || p->field_kind == LENS_FIELD_OBJECT))
+            add_object_point(mat3_apply_transposed(turn, vec3_sub(b->position, at->position)), p);
+        count = add_wavelength(waves, count, b);
+        first = first ? first : b;
     }
     if (p->field_count == 0)
         add_field(p, 0.0, 0.0);
-    if (p->wavelength_count == 0)
-        add_wavelength(p, s->render.lambda_nm);
+    if (count == 0)
+        waves[count++] = (ranked_wave){{s->render.lambda_nm, 1.0}, 0};
+    order_wavelengths(waves, count, p);
+    if (first)
+        read_aperture(p, first);
 }
