@@ -154,3 +154,34 @@ status lens_ghosts(lens_study *s, diagnostic *why);
 status lens_images(lens_study *s, size_t field, diagnostic *why);
 status lens_curves(lens_study *s, diagnostic *why);
 status lens_waves(lens_study *s, size_t field, diagnostic *why);
+
+/* --- pupil.c --- */
+
+/* Rays that sample the cosines of direction at the image: n x n, row by row, rows along the field's direction. Optical
+ * path difference in waves; place in the stop in units of its radius. Beyond what arrives they go on smoothly for some
+ * samples, then they are NaN. */
+enum { LENS_WAVES, LENS_STOP_X, LENS_STOP_Y, LENS_SAMPLE_KINDS };
+typedef struct lens_samples {
+    int n, count; /* count: of those that arrive */
+    double step;  /* of the cosines */
+    double stop_radius;
+    double *value[LENS_SAMPLE_KINDS];
+    bool *passes;
+} lens_samples;
+
+/* Released by lens_samples_release, also after an error. */
+status lens_samples_make(int n, lens_samples *out, diagnostic *why);
+void lens_samples_release(lens_samples *s);
+/* any: whether there is light, and derivatives that find it. */
+status lens_samples_trace(const lens_study *s, lens_beam *bundle, lens_samples *out, bool *any, diagnostic *why);
+
+/* A finer grid of the same pupil: `cover` is the part of the cell that passes, area their sum. */
+typedef struct lens_pupil {
+    int n;
+    double step, area;
+    double *cover, *waves; /* one block */
+} lens_pupil;
+
+/* Of every skip-th sample, with `finer` points for each. Released by lens_pupil_release, also after an error. */
+status lens_pupil_make(const lens_samples *s, int skip, int finer, lens_pupil *out, diagnostic *why);
+void lens_pupil_release(lens_pupil *p);

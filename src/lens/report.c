@@ -73,8 +73,10 @@ static const lens_section sections[] = {
      .every = 10},
     {.name = "wavefront",
      .x = "",
-     .meaning = "optical path differences over the exit pupil: peak to valley, root mean square; Strehl ratio by "
-                "Marechal, exp(-(2 pi rms)^2), and by the peak of the point image"},
+     .meaning =
+         "optical path differences over the exit pupil: peak to valley, root mean square; Strehl ratio by "
+         "Marechal, exp(-(2 pi rms)^2), and by the peak of the point image; strehl_error: from that of half as many "
+         "rays"},
     {.name = "encircled",
      .x = "mm",
      .meaning = "encircled energy: fraction of the light within a circle about the centroid of the point image, with "

@@ -65,5 +65,57 @@ def paraxial():
         print(f'{nm:.4f} {-1.0 / u:.7f} {-last / u - SURFACES[-1][1]:.7f}')
 
 
+def meridional(y, u, nm):
+    """A ray in the meridional plane from the first vertex's plane, as (height, sine, path) in the image's plane, and its
+    height at the stop."""
+    z, n, path, slope = 0.0, 1.0, 0.0, math.sqrt(1.0 - u * u)
+    dy, dz, stop, at = u, slope, 0.0, 0.0  # z: of the ray's point, `at` of the vertex
+    for i, (c, t, glass, _) in enumerate(SURFACES):
+        A, B, C = c, dz - c * (y * dy + (z - at) * dz), c * (y * y + (z - at) ** 2) - 2.0 * (z - at)
+        s = C / (B + math.copysign(math.sqrt(B * B - A * C), dz))
+        y, z, path = y + s * dy, z + s * dz, path + n * s
+        if i == STOP:
+            stop = y
+        ny, nz = -c * y, 1.0 - c * (z - at)  # unit normal of a sphere
+        mu = n / index(glass, nm)
+        ci = dy * ny + dz * nz
+        ct = math.sqrt(1.0 - mu * mu * (1.0 - ci * ci))
+        dy, dz, n = mu * dy + (ct - mu * ci) * ny, mu * dz + (ct - mu * ci) * nz, index(glass, nm)
+        at += t
+    s = (at - z) / dz
+    return y + s * dy, dy, path + s, stop
+
+
+def strehl():
+    """On the axis, by wavelength: the Debye integral along the pupil's radius, for a rotationally symmetric wavefront on
+    the sphere about the image's point that reaches to the exit pupil."""
+    y, u, n = 0.0, 1.0, 1.0
+    for c, t, glass, _ in SURFACES[STOP:]:
+        after = index(glass, WAVES[1][0])
+        u = (n * u - y * c * (after - n)) / after
+        n, last = after, y
+        y += u * t
+    exit_ray = -last / u - SURFACES[-1][1]  # from the image to the exit pupil
+    stop = abs(meridional(PUPIL / 2, 0.0, WAVES[1][0])[3])
+    for nm, _ in WAVES:
+        low, high = 0.0, PUPIL
+        for _ in range(80):  # the marginal ray, at the stop's edge
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if meridional(middle, 0.0, nm)[3] < stop else (low, middle)
+        count, R, samples = 4000, exit_ray, []
+        chief = meridional(0.0, 0.0, nm)[2]
+        for i in range(count + 1):
+            e, sine, path, _ = meridional(low * i / count, 0.0, nm)
+            cosine = math.sqrt(1.0 - sine * sine)
+            # to the sphere x^2 + z^2 = R^2 about (0, 0), from (e, 0) along (sine, cosine); R is below 0
+            back = -e * sine - math.sqrt(e * e * sine * sine + R * R - e * e)
+            samples.append((sine * sine, ((path + back) - (chief + R)) / (nm * 1e-6)))
+        re = im = 0.0
+        for (a, v), (b, w) in zip(samples, samples[1:]):
+            middle = 2.0 * math.pi * 0.5 * (v + w)
+            re, im = re + (b - a) * math.cos(middle), im + (b - a) * math.sin(middle)
+        print(f'{nm:.4f} {math.hypot(re, im) ** 2 / samples[-1][0] ** 2:.6f}')
+
+
 if __name__ == '__main__':
     globals()[sys.argv[1]](*sys.argv[2:])
