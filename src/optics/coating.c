@@ -95,13 +95,10 @@ static status read_word(coating_reader *r, char word[COATING_TEXT_MAX + 1])
 
 static status nearest_medium(const coating_reader *r, const char *word)
 {
-    const char *names[32];
-    size_t count = 0;
-    for (size_t i = 0; i < media_count() && count < 32; i++)
-        names[count++] = media_at(i)->name;
-    for (size_t i = 0; i < metals_count() && count < 32; i++)
-        names[count++] = metals_at(i)->name;
-    const char *nearest = text_nearest(word, names, count);
+#define NAME(name) name,
+    static const char *const names[] = {MEDIA_NAMES(NAME) METAL_NAMES(NAME)};
+#undef NAME
+    const char *nearest = text_nearest(word, names, sizeof names / sizeof *names);
     char remedy[160];
     snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : EXAMPLE, nearest);
     return diagnose(r->why, STATUS_BAD_INPUT, remedy, "'%.60s' is no index of a layer", word);

@@ -1,4 +1,4 @@
-/* The catalogues of media and of metals. */
+/* The catalogue of media (media.h). */
 #include "optics/media.h"
 
 #include <assert.h>
@@ -13,6 +13,14 @@
 #define AND_AS_QUOTED "; also as the literature quotes the original"
 #define AIR_ASSUMED \
     "The source states no reference; assumed relative to air, in which refractometers and prisms are used."
+
+/* Glasses of one catalogue, by Sellmeier's law; the indices and Abbe numbers of its data sheets are tested. */
+#define SCHOTT(word, glass, kind, low, high, ...)                                                                     \
+    {                                                                                                                 \
+        .name = word, .title = "Schott " glass ", " kind, .law = {DISPERSION_SELLMEIER, 6, {__VA_ARGS__}, low, high}, \
+        .relative_to_air = true, .temperature_c = 20.0, .source = "Schott, optical glass catalogue, 20 January 2017", \
+        .verified = IN_DATABASE("specs/schott/optical/" glass ".yml"), .note = ""                                     \
+    }
 
 static const medium medium_rows[] = {
     {.name = "air",
@@ -231,6 +239,121 @@ static const medium medium_rows[] = {
      .source = "Siefke et al., Adv. Opt. Mater. 4, 1780 (2016)",
      .verified = IN_DATABASE("main/TiO2/nk/Siefke.yml"),
      .note = "Its absorption, k below 0.001 above 395 nm and 0.004 at 380 nm, is left out. " AIR_ASSUMED},
+
+    SCHOTT("n-fk5", "N-FK5", "a fluorite crown", 260, 2500, 0.844309338, 0.00475111955, 0.344147824, 0.0149814849,
+           0.910790213, 97.8600293),
+    SCHOTT("n-fk51a", "N-FK51A", "a fluorite crown", 290, 2500, 0.971247817, 0.00472301995, 0.216901417, 0.0153575612,
+           0.904651666, 168.68133),
+    SCHOTT("n-fk58", "N-FK58", "a fluorite crown", 260, 2500, 0.738042712, 0.00339065607, 0.363371967, 0.0117551189,
+           0.989296264, 212.842145),
+    SCHOTT("n-pk51", "N-PK51", "a phosphate crown", 300, 2500, 1.15610775, 0.00585597402, 0.153229344, 0.0194072416,
+           0.785618966, 140.537046),
+    SCHOTT("n-psk53a", "N-PSK53A", "a dense phosphate crown", 320, 2500, 1.38121836, 0.00706416337, 0.196745645,
+           0.0233251345, 0.886089205, 97.4847345),
+    SCHOTT("n-bk10", "N-BK10", "a borosilicate crown", 290, 2500, 0.888308131, 0.00516900822, 0.328964475, 0.0161190045,
+           0.984610769, 99.7575331),
+    SCHOTT("n-k5", "N-K5", "a crown", 310, 2500, 1.08511833, 0.00661099503, 0.199562005, 0.024110866, 0.930511663,
+           111.982777),
+    SCHOTT("k7", "K7", "a crown", 310, 2500, 1.1273555, 0.00720341707, 0.124412303, 0.0269835916, 0.827100531,
+           100.384588),
+    SCHOTT("n-bak1", "N-BAK1", "a barium crown", 300, 2500, 1.12365662, 0.00644742752, 0.309276848, 0.0222284402,
+           0.881511957, 107.297751),
+    SCHOTT("n-bak2", "N-BAK2", "a barium crown", 300, 2500, 1.01662154, 0.00592383763, 0.319903051, 0.0203828415,
+           0.937232995, 113.118417),
+    SCHOTT("n-bak4", "N-BAK4", "a barium crown", 334, 2500, 1.28834642, 0.00779980626, 0.132817724, 0.0315631177,
+           0.945395373, 105.965875),
+    SCHOTT("n-sk2", "N-SK2", "a dense crown", 310, 2500, 1.28189012, 0.0072719164, 0.257738258, 0.0242823527,
+           0.96818604, 110.377773),
+    SCHOTT("n-sk4", "N-SK4", "a dense crown", 334, 2500, 1.32993741, 0.00716874107, 0.228542996, 0.0246455892,
+           0.988465211, 100.886364),
+    SCHOTT("n-sk5", "N-SK5", "a dense crown", 300, 2500, 0.991463823, 0.00522730467, 0.495982121, 0.0172733646,
+           0.987393925, 98.3594579),
+    SCHOTT("n-sk11", "N-SK11", "a dense crown", 300, 2500, 1.17963631, 0.00680282081, 0.229817295, 0.0219737205,
+           0.935789652, 101.513232),
+    SCHOTT("n-sk14", "N-SK14", "a dense crown", 310, 2500, 0.936155374, 0.00461716525, 0.594052018, 0.016885927,
+           1.04374583, 103.736265),
+    SCHOTT("n-sk16", "N-SK16", "a dense crown", 310, 2500, 1.34317774, 0.00704687339, 0.241144399, 0.0229005,
+           0.994317969, 92.7508526),
+    SCHOTT("n-ssk2", "N-SSK2", "an extra dense crown", 350, 2500, 1.4306027, 0.00823982975, 0.153150554, 0.0333736841,
+           1.01390904, 106.870822),
+    SCHOTT("n-ssk5", "N-SSK5", "an extra dense crown", 350, 2500, 1.59222659, 0.00920284626, 0.103520774, 0.0423530072,
+           1.05174016, 106.927374),
+    SCHOTT("n-ssk8", "N-SSK8", "an extra dense crown", 350, 2500, 1.44857867, 0.00869310149, 0.117965926, 0.0421566593,
+           1.06937528, 111.300666),
+    SCHOTT("n-balf4", "N-BALF4", "a light barium flint", 350, 2500, 1.31004128, 0.0079659645, 0.142038259, 0.0330672072,
+           0.964929351, 109.19732),
+    SCHOTT("n-baf4", "N-BAF4", "a barium flint", 365, 2500, 1.42056328, 0.00942015382, 0.102721269, 0.0531087291,
+           1.14380976, 110.278856),
+    SCHOTT("n-baf10", "N-BAF10", "a barium flint", 350, 2500, 1.5851495, 0.00926681282, 0.143559385, 0.0424489805,
+           1.08521269, 105.613573),
+    SCHOTT("n-lak8", "N-LAK8", "a lanthanum crown", 310, 2500, 1.33183167, 0.00620023871, 0.546623206, 0.0216465439,
+           1.19084015, 82.5827736),
+    SCHOTT("n-lak9", "N-LAK9", "a lanthanum crown", 300, 2500, 1.46231905, 0.00724270156, 0.344399589, 0.0243353131,
+           1.15508372, 85.4686868),
+    SCHOTT("n-lak10", "N-LAK10", "a lanthanum crown", 350, 2500, 1.72878017, 0.00886014635, 0.169257825, 0.0363416509,
+           1.19386956, 82.9009069),
+    SCHOTT("n-lak14", "N-LAK14", "a lanthanum crown", 310, 2500, 1.50781212, 0.00746098727, 0.318866829, 0.0242024834,
+           1.14287213, 80.9565165),
+    SCHOTT("n-lak21", "N-LAK21", "a lanthanum crown", 320, 2500, 1.22718116, 0.00602075682, 0.420783743, 0.0196862889,
+           1.01284843, 88.4370099),
+    SCHOTT("n-lak22", "N-LAK22", "a lanthanum crown", 310, 2500, 1.14229781, 0.00585778594, 0.535138441, 0.0198546147,
+           1.04088385, 100.834017),
+    SCHOTT("n-lak33b", "N-LAK33B", "a lanthanum crown", 300, 2500, 1.42288601, 0.00670283452, 0.593661336, 0.021941621,
+           1.1613526, 80.7407701),
+    SCHOTT("n-laf2", "N-LAF2", "a lanthanum flint", 350, 2500, 1.80984227, 0.0101711622, 0.15729555, 0.0442431765,
+           1.0930037, 100.687748),
+    SCHOTT("n-laf21", "N-LAF21", "a lanthanum flint", 334, 2500, 1.87134529, 0.0093332228, 0.25078301, 0.0345637762,
+           1.22048639, 83.2404866),
+    SCHOTT("n-lasf31a", "N-LASF31A", "a dense lanthanum flint", 250, 2500, 1.96485075, 0.00982060155, 0.475231259,
+           0.0344713438, 1.48360109, 110.739863),
+    SCHOTT("n-lasf40", "N-LASF40", "a dense lanthanum flint", 365, 2500, 1.98550331, 0.010958331, 0.274057042,
+           0.0474551603, 1.28945661, 96.9085286),
+    SCHOTT("n-lasf44", "N-LASF44", "a dense lanthanum flint", 334, 2500, 1.78897105, 0.00872506277, 0.38675867,
+           0.0308085023, 1.30506243, 92.7743824),
+    SCHOTT("n-kzfs4", "N-KZFS4", "a short flint", 334, 2500, 1.35055424, 0.0087628207, 0.197575506, 0.0371767201,
+           1.09962992, 90.3866994),
+    SCHOTT("n-kzfs8", "N-KZFS8", "a short flint", 334, 2500, 1.62693651, 0.010880863, 0.24369876, 0.0494207753,
+           1.62007141, 131.009163),
+    SCHOTT("llf1", "LLF1", "an extra light flint", 310, 2500, 1.21640125, 0.00857807248, 0.13366454, 0.0420143003,
+           0.883399468, 107.59306),
+    SCHOTT("lf5", "LF5", "a light flint", 320, 2325, 1.28035628, 0.00929854416, 0.163505973, 0.0449135769, 0.893930112,
+           110.493685),
+    SCHOTT("f2", "F2", "a flint", 320, 2500, 1.34533359, 0.00997743871, 0.209073176, 0.0470450767, 0.937357162,
+           111.886764),
+    SCHOTT("n-f2", "N-F2", "a flint", 365, 2500, 1.39757037, 0.00995906143, 0.159201403, 0.0546931752, 1.2686543,
+           119.248346),
+    SCHOTT("f5", "F5", "a flint", 320, 2500, 1.3104463, 0.00958633048, 0.19603426, 0.0457627627, 0.96612977,
+           115.011883),
+    SCHOTT("n-sf1", "N-SF1", "a dense flint", 370, 2500, 1.60865158, 0.0119654879, 0.237725916, 0.0590589722,
+           1.51530653, 135.521676),
+    SCHOTT("sf2", "SF2", "a dense flint", 350, 2500, 1.40301821, 0.0105795466, 0.231767504, 0.0493226978, 0.939056586,
+           112.405955),
+    SCHOTT("n-sf2", "N-SF2", "a dense flint", 365, 2500, 1.47343127, 0.0109019098, 0.163681849, 0.0585683687,
+           1.36920899, 127.404933),
+    SCHOTT("sf4", "SF4", "a dense flint", 365, 2500, 1.61957826, 0.0125502104, 0.339493189, 0.0544559822, 1.02566931,
+           117.652222),
+    SCHOTT("n-sf4", "N-SF4", "a dense flint", 365, 2500, 1.67780282, 0.012679345, 0.282849893, 0.0602038419, 1.63539276,
+           145.760496),
+    SCHOTT("sf5", "SF5", "a dense flint", 350, 2500, 1.46141885, 0.0111826126, 0.247713019, 0.0508594669, 0.949995832,
+           112.041888),
+    SCHOTT("n-sf5", "N-SF5", "a dense flint", 370, 2500, 1.52481889, 0.011254756, 0.187085527, 0.0588995392, 1.42729015,
+           129.141675),
+    SCHOTT("sf6", "SF6", "a dense flint", 365, 2500, 1.72448482, 0.0134871947, 0.390104889, 0.0569318095, 1.04572858,
+           118.557185),
+    SCHOTT("n-sf6", "N-SF6", "a dense flint", 370, 2500, 1.77931763, 0.0133714182, 0.338149866, 0.0617533621,
+           2.08734474, 174.01759),
+    SCHOTT("n-sf8", "N-SF8", "a dense flint", 370, 2500, 1.55075812, 0.0114338344, 0.209816918, 0.0582725652,
+           1.46205491, 133.24165),
+    SCHOTT("sf10", "SF10", "a dense flint", 380, 2500, 1.61625977, 0.0127534559, 0.259229334, 0.0581983954, 1.07762317,
+           116.60768),
+    SCHOTT("n-sf10", "N-SF10", "a dense flint", 380, 2500, 1.62153902, 0.0122241457, 0.256287842, 0.0595736775,
+           1.64447552, 147.468793),
+    SCHOTT("n-sf15", "N-SF15", "a dense flint", 370, 2500, 1.57055634, 0.0116507014, 0.218987094, 0.0597856897,
+           1.50824017, 132.709339),
+    SCHOTT("n-sf57", "N-SF57", "a dense flint", 370, 2500, 1.87543831, 0.0141749518, 0.37375749, 0.0640509927,
+           2.30001797, 177.389795),
+    SCHOTT("n-sf66", "N-SF66", "a dense flint", 390, 2500, 2.0245976, 0.0147053225, 0.470187196, 0.0692998276,
+           2.59970433, 161.817601),
 };
 
 static_assert(sizeof medium_rows / sizeof medium_rows[0] == MEDIA_COUNT, "MEDIA_NAMES is the catalogue's first column");
@@ -257,6 +380,13 @@ const char *media_usual_name(const char *name)
 {
     static const char *const others[][2] = {{"n-bk7", "bk7"},
                                             {"schott n-bk7", "bk7"},
+                                            {"n-bk7ht", "bk7"}, /* of high transmittance, with the same law */
+                                            {"n-bak4ht", "n-bak4"},
+                                            {"n-sk2ht", "n-sk2"},
+                                            {"n-kzfs4ht", "n-kzfs4"},
+                                            {"f2ht", "f2"},
+                                            {"n-sf6ht", "n-sf6"},
+                                            {"n-sf57ht", "n-sf57"},
                                             {"silica", "fused-silica"},
                                             {"sio2", "fused-silica"},
                                             {"tantala", "ta2o5"},
@@ -292,98 +422,4 @@ double medium_index(const medium *m, double lambda_nm)
 {
     const double n = dispersion_index(&m->law, lambda_nm);
     return m->relative_to_air ? n * dispersion_index(&medium_rows[0].law, lambda_nm) : n;
-}
-
-/* ---- metals ---- */
-
-/* Wavelengths per table; those of Johnson and Christy are at the photon energies 3.37 .. 1.51 eV. */
-enum { JOHNSON_POINTS = 16, RAKIC_POINTS = 13 };
-
-#define IN_MAIN(path) "refractiveindex.info, main/" path " at commit ff11b58"
-#define JOHNSON "Johnson and Christy, Phys. Rev. B 6, 4370 (1972)"
-#define TABLE(points, ...)                                      \
-    {                                                           \
-        DISPERSION_TABLE, 2 * (points), {__VA_ARGS__}, 0.0, 0.0 \
-    }
-
-static const metal metal_rows[] = {
-    {.name = "silver",
-     .title = "silver, evaporated film",
-     .n = TABLE(JOHNSON_POINTS, 367.9, 0.07, 381.5, 0.05, 397.4, 0.05, 413.3, 0.05, 430.5, 0.04, 450.9, 0.04, 471.4,
-                0.05, 495.9, 0.05, 520.9, 0.05, 548.6, 0.06, 582.1, 0.05, 616.8, 0.06, 659.5, 0.05, 704.5, 0.04, 756.0,
-                0.03, 821.1, 0.04),
-     .k = TABLE(JOHNSON_POINTS, 367.9, 1.657, 381.5, 1.864, 397.4, 2.070, 413.3, 2.275, 430.5, 2.462, 450.9, 2.657,
-                471.4, 2.869, 495.9, 3.093, 520.9, 3.324, 548.6, 3.586, 582.1, 3.858, 616.8, 4.152, 659.5, 4.483, 704.5,
-                4.838, 756.0, 5.242, 821.1, 5.727),
-     .source = JOHNSON,
-     .verified = IN_MAIN("Ag/nk/Johnson.yml"),
-     .note = "n is given to 0.01, and so R to 0.003. Silver in air tarnishes."},
-    {.name = "gold",
-     .title = "gold, evaporated film",
-     .n = TABLE(JOHNSON_POINTS, 367.9, 1.48, 381.5, 1.46, 397.4, 1.47, 413.3, 1.46, 430.5, 1.45, 450.9, 1.38, 471.4,
-                1.31, 495.9, 1.04, 520.9, 0.62, 548.6, 0.43, 582.1, 0.29, 616.8, 0.21, 659.5, 0.14, 704.5, 0.13, 756.0,
-                0.14, 821.1, 0.16),
-     .k = TABLE(JOHNSON_POINTS, 367.9, 1.895, 381.5, 1.933, 397.4, 1.952, 413.3, 1.958, 430.5, 1.948, 450.9, 1.914,
-                471.4, 1.849, 495.9, 1.833, 520.9, 2.081, 548.6, 2.455, 582.1, 2.863, 616.8, 3.272, 659.5, 3.697, 704.5,
-                4.103, 756.0, 4.542, 821.1, 5.083),
-     .source = JOHNSON,
-     .verified = IN_MAIN("Au/nk/Johnson.yml"),
-     .note = ""},
-    {.name = "copper",
-     .title = "copper, evaporated film",
-     .n = TABLE(JOHNSON_POINTS, 367.9, 1.36, 381.5, 1.33, 397.4, 1.32, 413.3, 1.28, 430.5, 1.25, 450.9, 1.24, 471.4,
-                1.25, 495.9, 1.22, 520.9, 1.18, 548.6, 1.02, 582.1, 0.70, 616.8, 0.30, 659.5, 0.22, 704.5, 0.21, 756.0,
-                0.24, 821.1, 0.26),
-     .k = TABLE(JOHNSON_POINTS, 367.9, 1.975, 381.5, 2.045, 397.4, 2.116, 413.3, 2.207, 430.5, 2.305, 450.9, 2.397,
-                471.4, 2.483, 495.9, 2.564, 520.9, 2.608, 548.6, 2.577, 582.1, 2.704, 616.8, 3.205, 659.5, 3.747, 704.5,
-                4.205, 756.0, 4.665, 821.1, 5.180),
-     .source = JOHNSON,
-     .verified = IN_MAIN("Cu/nk/Johnson.yml"),
-     .note = "Without oxide: copper in air darkens."},
-    {.name = "aluminium",
-     .title = "aluminium without oxide",
-     .n = TABLE(RAKIC_POINTS, 364.66, 0.39877, 413.28, 0.52135, 442.80, 0.60790, 476.87, 0.72780, 516.60, 0.87340,
-                563.57, 1.0728, 619.93, 1.3660, 652.25, 1.5724, 688.81, 1.8301, 729.32, 2.1606, 774.91, 2.6154, 794.78,
-                2.7675, 815.69, 2.7668),
-     .k = TABLE(RAKIC_POINTS, 364.66, 4.3957, 413.28, 5.0008, 442.80, 5.3676, 476.87, 5.7781, 516.60, 6.2418, 563.57,
-                6.7839, 619.93, 7.4052, 652.25, 7.7354, 688.81, 8.0601, 729.32, 8.3565, 774.91, 8.4914, 794.78, 8.3866,
-                815.69, 8.2573),
-     .source = "Rakic, Appl. Opt. 34, 4755 (1995)",
-     .verified = IN_MAIN("Al/nk/Rakic.yml"),
-     .note =
-         "Derived from many layers by Kramers-Kronig analysis. In air an oxide layer of some nanometres covers it."},
-};
-
-#define ONE(name) +1
-static_assert(sizeof metal_rows / sizeof metal_rows[0] == 0 METAL_NAMES(ONE),
-              "METAL_NAMES is the catalogue's first column");
-#undef ONE
-
-size_t metals_count(void)
-{
-    return sizeof metal_rows / sizeof metal_rows[0];
-}
-
-const metal *metals_at(size_t i)
-{
-    return &metal_rows[i];
-}
-
-const metal *metals_find(const char *name)
-{
-    for (size_t i = 0; i < metals_count(); i++)
-        if (strcmp(metal_rows[i].name, name) == 0)
-            return &metal_rows[i];
-    return NULL;
-}
-
-complex_pair metal_index(const metal *m, double lambda_nm)
-{
-    return complex_of(dispersion_index(&m->n, lambda_nm), dispersion_index(&m->k, lambda_nm));
-}
-
-double metal_reflectance(const metal *m, double lambda_nm)
-{
-    const complex_pair i = metal_index(m, lambda_nm), one = complex_of(1.0, 0.0);
-    return complex_norm2(complex_sub(i, one)) / complex_norm2(complex_add(i, one));
 }

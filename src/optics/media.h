@@ -34,7 +34,64 @@
     X("alumina")       \
     X("hfo2")          \
     X("ta2o5")         \
-    X("tio2")
+    X("tio2")          \
+    X("n-fk5")         \
+    X("n-fk51a")       \
+    X("n-fk58")        \
+    X("n-pk51")        \
+    X("n-psk53a")      \
+    X("n-bk10")        \
+    X("n-k5")          \
+    X("k7")            \
+    X("n-bak1")        \
+    X("n-bak2")        \
+    X("n-bak4")        \
+    X("n-sk2")         \
+    X("n-sk4")         \
+    X("n-sk5")         \
+    X("n-sk11")        \
+    X("n-sk14")        \
+    X("n-sk16")        \
+    X("n-ssk2")        \
+    X("n-ssk5")        \
+    X("n-ssk8")        \
+    X("n-balf4")       \
+    X("n-baf4")        \
+    X("n-baf10")       \
+    X("n-lak8")        \
+    X("n-lak9")        \
+    X("n-lak10")       \
+    X("n-lak14")       \
+    X("n-lak21")       \
+    X("n-lak22")       \
+    X("n-lak33b")      \
+    X("n-laf2")        \
+    X("n-laf21")       \
+    X("n-lasf31a")     \
+    X("n-lasf40")      \
+    X("n-lasf44")      \
+    X("n-kzfs4")       \
+    X("n-kzfs8")       \
+    X("llf1")          \
+    X("lf5")           \
+    X("f2")            \
+    X("n-f2")          \
+    X("f5")            \
+    X("n-sf1")         \
+    X("sf2")           \
+    X("n-sf2")         \
+    X("sf4")           \
+    X("n-sf4")         \
+    X("sf5")           \
+    X("n-sf5")         \
+    X("sf6")           \
+    X("n-sf6")         \
+    X("n-sf8")         \
+    X("sf10")          \
+    X("n-sf10")        \
+    X("n-sf15")        \
+    X("n-sf57")        \
+    X("n-sf66")
 
 #define MEDIA_ONE(name) +1
 enum { MEDIA_COUNT = 0 MEDIA_NAMES(MEDIA_ONE) };

@@ -277,8 +277,8 @@ static status parse_choice(const param *row, const char *label, const char *text
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
         char range[400], remedy[460];
-        snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest,
-                 param_range_text(row, range, sizeof range));
+        snprintf(remedy, sizeof remedy, "did you mean '%s'? %s%s", nearest, is_medium ? "" : "It is ",
+                 is_medium ? "cuvette media lists the names" : param_range_text(row, range, sizeof range));
         return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not one of the choices", label, text);
     }
     if (is_medium)
