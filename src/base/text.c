@@ -157,6 +157,68 @@ status text_writer_end(text_writer *writer, status code, char **text, size_t *si
 
 /* ---- words of a shell ---- */
 
+size_t text_utf8(const char *text, uint32_t *out)
+{
+    const unsigned char *b = (const unsigned char *)text;
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t length = b[0] < 0x80 ? 1 : b[0] >> 5 == 6 ? 2 : b[0] >> 4 == 14 ? 3 : b[0] >> 3 == 30 ? 4 : 0;
+    uint32_t c = length < 2 ? b[0] : b[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((b[i] & 0xc0) != 0x80)
+            return 0;
+        c = c << 6 | (b[i] & 0x3fu);
+    }
+    const bool valid = length > 0 && c >= least[length] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
+    *out = c;
+    return valid ? length : 0;
+}
+
+/* Writes a character as UTF-8; returns the place after it. */
+static char *put_utf8(char *to, uint32_t c)
+{
+    if (c < 0x80) {
+        *to++ = (char)c;
+        return to;
+    }
+    const int more = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3;
+    *to++ = (char)((0xff00u >> (more + 1) & 0xffu) | c >> 6 * more);
+    for (int i = more - 1; i >= 0; i--)
+        *to++ = (char)(0x80u | (c >> 6 * i & 0x3fu));
+    return to;
+}
+
+/* The unit of UTF-16 at a place; 0 beyond the end. */
+static uint32_t unit_at(const char *text, size_t size, size_t i, bool low_first)
+{
+    if (i + 1 >= size)
+        return 0;
+    const uint32_t a = (unsigned char)text[i], b = (unsigned char)text[i + 1];
+    return low_first ? a | b << 8 : a << 8 | b;
+}
+
+static uint32_t wide_at(const char *text, size_t size, size_t *i, bool low_first)
+{
+    const uint32_t a = unit_at(text, size, *i, low_first), b = unit_at(text, size, *i + 2, low_first);
+    *i += 2;
+    if (a < 0xd800 || a > 0xdfff)
+        return a;
+    if (a > 0xdbff || b < 0xdc00 || b > 0xdfff)
+        return ' ';
+    *i += 2;
+    return 0x10000 + ((a - 0xd800) << 10 | (b - 0xdc00));
+}
+
+/* The character at a place of a text of bytes, which is of ISO 8859-1 where it is not UTF-8. */
+static uint32_t byte_at(const char *text, size_t size, size_t *i)
+{
+    char next[5] = {0};
+    uint32_t c = 0;
+    memcpy(next, text + *i, size - *i < 4 ? size - *i : 4);
+    const size_t length = text_utf8(next, &c);
+    *i += length > 0 ? length : 1;
+    return length > 0 ? c : (unsigned char)next[0];
+}
+
 char *text_narrow(const char *text, size_t size)
 {
     const bool marked_low = size >= 2 && memcmp(text, "\xff\xfe", 2) == 0,
@@ -164,15 +226,14 @@ char *text_narrow(const char *text, size_t size)
                low_first = marked_low || (size >= 4 && text[0] && !text[1] && text[2] && !text[3]),
                wide = low_first || marked_high;
     size_t i = marked_low || marked_high ? 2 : size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-    char *plain = malloc(size + 1), *to = plain;
-    for (; plain && i < size; i += wide ? 2 : 1) {
-        const char other = wide && i + 1 < size ? text[i + low_first] : (char)0;
-        const char byte = wide && !low_first && i + 1 < size ? text[i + 1] : text[i];
-        *to++ = (wide && other) || !byte || byte == '\r' ? ' ' : byte;
+    char *narrow = malloc(2 * size + 4), *to = narrow;
+    while (narrow && i < size) {
+        const uint32_t c = wide ? wide_at(text, size, &i, low_first) : byte_at(text, size, &i);
+        to = put_utf8(to, c == 0 || c == '\r' ? ' ' : c);
     }
-    if (plain)
+    if (narrow)
         *to = 0;
-    return plain;
+    return narrow;
 }
 
 void shell_word_write(FILE *out, const char *word)

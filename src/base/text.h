@@ -4,6 +4,7 @@
 #include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* Optimal string alignment distance (insert, delete, replace, swap neighbours) between two words, letter case ignored;
@@ -39,9 +40,12 @@ status text_writer_end(text_writer *writer, status code, char **text, size_t *si
 
 /* ---- encodings ---- */
 
-/* The text of a file of another program as bytes and a final 0: of UTF-16, with a byte order mark or without one, the
- * characters below 128. Other characters of UTF-16, CR, bytes of 0 and the mark of UTF-8 become blanks. NULL when out
- * of memory. */
+/* Decodes one UTF-8 character (RFC 3629); returns its length in bytes, 0 if it is invalid. */
+size_t text_utf8(const char *text, uint32_t *out);
+
+/* The text of a file of another program as UTF-8 and a final 0: from UTF-16, with a byte order mark or without one, or
+ * from bytes, which are of ISO 8859-1 where they are not UTF-8. CR, 0 and halves of characters become blanks. NULL when
+ * out of memory. */
 char *text_narrow(const char *text, size_t size);
 
 /* Writes a word of a command line, for a reader who copies it into a shell: in single quotes where a shell would change

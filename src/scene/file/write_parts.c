@@ -13,28 +13,11 @@
 
 /* --- scalars --- */
 
-/* Decodes one UTF-8 character (RFC 3629); returns its length in bytes, 0 if it is invalid. */
-static size_t decode(const char *text, uint32_t *out)
-{
-    const unsigned char *b = (const unsigned char *)text;
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    const size_t length = b[0] < 0x80 ? 1 : b[0] >> 5 == 6 ? 2 : b[0] >> 4 == 14 ? 3 : b[0] >> 3 == 30 ? 4 : 0;
-    uint32_t c = length < 2 ? b[0] : b[0] & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if ((b[i] & 0xc0) != 0x80)
-            return 0;
-        c = c << 6 | (b[i] & 0x3fu);
-    }
-    const bool valid = length > 0 && c >= least[length] && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
-    *out = c;
-    return valid ? length : 0;
-}
-
 status write_check_text(const char *label, const char *text, diagnostic *why)
 {
     uint32_t c;
     for (size_t length; *text; text += length) {
-        length = decode(text, &c);
+        length = text_utf8(text, &c);
         if (!length)
             return diagnose(why, STATUS_BAD_INPUT, "rename it", "%.150s is not UTF-8, which a scene file requires",
                             label);
@@ -72,7 +55,7 @@ static bool is_plain(const char *text)
         return false;
     uint32_t c;
     for (size_t step; *text; text += step) {
-        step = decode(text, &c);
+        step = text_utf8(text, &c);
         if (!step || !is_printable(c) || strchr("\"\\[]{}", (int)c))
             return false;
     }
@@ -84,7 +67,7 @@ static void put_quoted(FILE *out, const char *text)
     fputc('"', out);
     uint32_t c;
     for (size_t length; *text; text += length) {
-        length = decode(text, &c);
+        length = text_utf8(text, &c);
         if (c == '"' || c == '\\')
             fprintf(out, "\\%c", (int)c);
         else if (c == '\n')
