@@ -34,7 +34,7 @@ static status parse_glasses(const command_option *o, void *context, const char *
 }
 
 static const command_option options[] = {
-    {"glasses", 'g', "FILE", "glass catalogue (.agf) for names that the catalogue of media lacks; may be repeated",
+    {"glasses", 'g', "FILE", "glass catalogue (.agf), which precedes the catalogue of media; may be repeated",
      .store = parse_glasses},
     {"system", 0, "NAME", "of a scene: the lens system with that name (default: all its lenses)",
      OPTION_FILLS(option_text, lens_request, system)},
@@ -136,6 +136,8 @@ static status read_prescription(const lens_request *request, const lens_glasses 
                                 scene **s, diagnostic *why)
 {
     *out = lens_prescription_empty();
+    if (!lens_file_named(request->path) && glasses->count > 0)
+        return options_wrong("--glasses", glasses->file[0], why, "omit it", "a scene names its own files of glasses");
     if (!lens_file_named(request->path))
         return read_scene(request, out, s, why);
     if (request->system)
@@ -168,13 +170,19 @@ static status write(const lens_prescription *p, const scene *source, const lens_
                     bool as_scene, diagnostic *why)
 {
     const lens_text text = {p, path};
-    char **file = NULL;
+    const char *lacks = as_scene ? NULL : lens_file_lacks(p, path);
+    char **file = NULL, line[200];
     if (!as_scene)
-        return outputs_write_text(path, write_text, &text, why);
+        TRY(outputs_write_text(path, write_text, &text, why));
+    snprintf(line, sizeof line, "it does not hold %s", lacks ? lacks : "");
+    if (lacks)
+        terminal_note_of(path, line);
+    if (!as_scene)
+        return STATUS_OK;
     if (!source)
         return write_scene(p, glasses, path, why);
     status code = files_of_data(source, &file, why);
-    const lens_glasses own = {(const char *const *)file, source->data_count, NULL};
+    const lens_glasses own = {.file = (const char *const *)file, .count = source->data_count};
     THEN(code, write_scene(p, &own, path, why));
     for (size_t i = 0; file && i < source->data_count; i++)
         free(file[i]);
@@ -185,7 +193,7 @@ static status write(const lens_prescription *p, const scene *source, const lens_
 static status run(const lens_request *request, diagnostic *why)
 {
     static const char *const endings[] = {".yaml", ".yml", ".zmx", ".dat", ".csv"};
-    const lens_glasses glasses = {request->glass_file, request->glass_files, NULL};
+    const lens_glasses glasses = {.file = request->glass_file, .count = request->glass_files};
     lens_prescription p;
     size_t ending = 0;
     if (request->output) {

@@ -75,7 +75,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, report_request, figure)},
     {"system", 0, "NAME", "of a scene: the lens system with that name (default: all its lenses)",
      OPTION_FILLS(option_text, report_request, system)},
-    {"glasses", 'g', "FILE", "glass catalogue (.agf) for names that the catalogue of media lacks; may be repeated",
+    {"glasses", 'g', "FILE", "glass catalogue (.agf), which precedes the catalogue of media; may be repeated",
      .store = parse_glasses},
     {"field", 0, "LIST", "fields along +Y, such as 0,10,20, instead of those of the lens: degrees, or heights",
      .store = parse_field},
@@ -205,9 +205,11 @@ static status report_on(report_request *r, diagnostic *why)
     lens_place place;
     isa level;
     TRY(scene_input_isa(&level, why));
+    if (!lens_file_named(r->path) && r->glass_files > 0)
+        return options_wrong("--glasses", r->glass_file[0], why, "omit it", "a scene names its own files of glasses");
     status code = lens_open(r->path, r->system, &glasses, &p, &s, &place, why);
     for (size_t i = 0; code == STATUS_OK && i < r->field_count; i++)
-        p.field[i] = (lens_field){0.0, r->field[i], 1.0};
+        p.field[i] = (lens_field){0.0, r->field[i], 1.0}, p.vignetting[i] = (lens_vignetting){0};
     p.field_count = r->field_count ? r->field_count : p.field_count;
     THEN(code, lens_report_make(&p, &place, level, &r->options, &report, why));
     if (code == STATUS_OK)

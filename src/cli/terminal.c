@@ -181,8 +181,8 @@ void terminal_note(const char *text)
 
 void terminal_note_of(const char *path, const char *text)
 {
-    char line[1024];
-    snprintf(line, sizeof line, "%.250s: %.700s", path, text);
+    char line[2400];
+    snprintf(line, sizeof line, "%.250s: %.2100s", path, text);
     if (text[0])
         terminal_note(line);
 }

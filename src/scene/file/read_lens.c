@@ -226,11 +226,11 @@ static status read_table(const system_reader *r, const node *list, const lens_gl
 
 static status check_keys(const system_reader *r)
 {
-    const char *words[PLACE_KEYS + LENS_KEYS];
+    const char *words[PLACE_KEYS + LENS_SCENE_KEYS];
     size_t count = 0;
     for (size_t i = 0; i < PLACE_KEYS; i++)
         words[count++] = place_words[i];
-    for (size_t i = 0; i < LENS_KEYS; i++)
+    for (size_t i = 0; i < LENS_SCENE_KEYS; i++)
         words[count++] = lens_key_words[i];
     TRY(node_check_keys(r->file, r->map, words, count, r->why));
     const node *table = node_get(r->map, "surfaces");
@@ -239,7 +239,7 @@ static status check_keys(const system_reader *r)
                           "lens_systems: %.60s has %s", r->name,
                           table ? "both a file and surfaces" : "neither a file nor surfaces");
     for (size_t i = 0; !table && i < r->map->count; i++)
-        for (size_t k = 0; k < LENS_KEYS; k++)
+        for (size_t k = 0; k < LENS_SCENE_KEYS; k++)
             if (strcmp(r->map->keys[i]->text, lens_key_words[k]) == 0)
                 return wrong(r, r->map->keys[i], "set it in the lens file", "is given by the lens file",
                              lens_key_words[k]);
@@ -253,8 +253,8 @@ static status read_system(system_reader *r, const node *key)
     TRY(check_keys(r));
     TRY(read_place(r, &at));
     TRY(read_glasses(r));
-    const lens_glasses there = {(const char *const *)r->glass, r->glasses, r->access->root},
-                       written = {r->relative, r->glasses, NULL};
+    const lens_glasses there = {(const char *const *)r->glass, r->glasses, r->access->root, r->s},
+                       written = {.file = r->relative, .count = r->glasses};
     const node *table = node_get(r->map, "surfaces");
     TRY(table ? read_table(r, table, &there, &p) : read_file(r, node_get(r->map, "file"), &there, &p));
     at.glasses = &written;
@@ -265,10 +265,19 @@ static status read_system(system_reader *r, const node *key)
     return code;
 }
 
+/* Indices of prescriptions are relative to air: the scene is in air, unless its background names its surroundings. */
+static status put_in_air(const document *file, scene *s, diagnostic *why)
+{
+    const node *around = node_get(document_root(file), "background");
+    const bool named = around && around->kind == NODE_MAP && (node_get(around, "medium") || node_get(around, "ior"));
+    return named ? STATUS_OK : scene_set(s, "background.medium", "air", why);
+}
+
 status read_lens_systems(const document *file, const lens_access *access, scene *s, const node *map, diagnostic *why)
 {
     if (map->kind != NODE_MAP)
         return node_error(file, map, why, "write NAME: {file: PATH} below it", "lens_systems is not a map");
+    TRY(put_in_air(file, s, why));
     for (size_t i = 0; i < map->count; i++) {
         system_reader r = {
             .file = file, .access = access, .s = s, .map = map->items[i], .name = map->keys[i]->text, .why = why};

@@ -2,7 +2,8 @@
  *
  * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
  * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
- * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius. Columns:
+ * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius; vdx, vdy,
+ * vcx and vcy, vignetting factors with a number for each field. Columns:
  * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
  * (any text but 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and
  * thickness may be missing. */
@@ -18,7 +19,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LENS_BYTES_MAX = 1 << 24, TILT_MAX = 80 };
+enum { LENS_BYTES_MAX = 1 << 24, GLASS_BYTES_MAX = 1 << 26, TILT_MAX = 80 };
 
 /* --- .dat --- */
 
@@ -33,6 +34,8 @@ static status read_dat_row(lens_reader *r, bool *has_stop)
     TRY(lens_number(r, 1, "the thickness", &s->thickness));
     TRY(lens_number(r, 2, "the index", &n));
     TRY(lens_number(r, 3, "the diameter", &diameter));
+    if (r->count > 5)
+        return lens_wrong(r, 5, "give radius, thickness, index, diameter and V", "the line has %d numbers", r->count);
     double V = 0.0;
     if (r->count > 4)
         TRY(lens_number(r, 4, "the Abbe number", &V));
@@ -89,9 +92,9 @@ const char *const lens_column_words[LENS_COLUMNS] = {
     "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name", "tilt_x", "tilt_y",
     "a4",     "a6",        "a8",     "a10",      "a12",   "a14",  "a16",  "a18",  "a20"};
 
-const char *const lens_key_words[LENS_KEYS] = {"title",         "unit_mm",        "object_distance", "pupil",
-                                               "f_number",      "object_na",      "field_deg",       "field_height",
-                                               "wavelength_nm", "image_diameter", "image_radius"};
+const char *const lens_key_words[LENS_KEYS] = {
+    "title",         "unit_mm",        "object_distance", "pupil", "f_number", "object_na", "field_deg", "field_height",
+    "wavelength_nm", "image_diameter", "image_radius",    "vdx",   "vdy",      "vcx",       "vcy"};
 
 static int index_of(const char *word, const char *const *words, int count)
 {
@@ -153,6 +156,8 @@ static status read_wavelengths(const lens_reader *r)
 
 static status read_aperture(const lens_reader *r, lens_aperture_kind kind)
 {
+    if (r->p->aperture_kind != LENS_APERTURE_STOP)
+        return lens_wrong(r, 0, "keep one of pupil, f_number and object_na", "%s is a second aperture", r->word[0]);
     TRY(read_positive(r, r->word[0], &r->p->aperture));
     r->p->aperture_kind = kind;
     return STATUS_OK;
@@ -161,6 +166,9 @@ static status read_aperture(const lens_reader *r, lens_aperture_kind kind)
 static status read_key(const lens_reader *r, int key)
 {
     lens_prescription *p = r->p;
+    const bool is_list = key == 0 || (key >= 6 && key <= 8) || key >= LENS_SCENE_KEYS;
+    if (!is_list && r->count > 2)
+        return lens_wrong(r, 2, "give one number", "%s has %d numbers", r->word[0], r->count - 1);
     switch (key) {
     case 0:
         p->title[0] = 0;
@@ -178,7 +186,8 @@ static status read_key(const lens_reader *r, int key)
     case 7: return read_fields(r, true);
     case 8: return read_wavelengths(r);
     case 9: return read_positive(r, "image_diameter", &p->image_diameter);
-    default: return lens_number(r, 1, "image_radius", &p->image_radius);
+    case 10: return lens_number(r, 1, "image_radius", &p->image_radius);
+    default: return lens_read_vignetting(r, (size_t)(key - LENS_SCENE_KEYS));
     }
 }
 
@@ -190,6 +199,8 @@ static status read_header(const lens_reader *r, int at[LENS_COLUMNS])
         const int c = index_of(r->word[i], lens_column_words, LENS_COLUMNS);
         if (c < 0)
             return unknown(r, i, "column", lens_column_words, LENS_COLUMNS);
+        if (at[c] >= 0)
+            return lens_wrong(r, i, "keep one of them", "a second column %s", r->word[i]);
         at[c] = i;
     }
     return at[COLUMN_THICKNESS] < 0 ? lens_wrong(r, -1, "add the column thickness", "no column is named thickness")
@@ -211,11 +222,22 @@ static status cell_number(const lens_reader *r, const int at[LENS_COLUMNS], int 
     return lens_number(r, at[column], lens_column_words[column], out);
 }
 
-static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS])
+/* Spreadsheets end their lines with empty cells. */
+static void drop_empty_cells(lens_reader *r, int least)
+{
+    while (r->count > least && !*r->word[r->count - 1])
+        r->count--;
+}
+
+static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS], int cells)
 {
     status code = STATUS_OK;
-    if (r->count > LENS_COLUMNS)
-        return lens_wrong(r, LENS_COLUMNS, "give as many cells as the header", "the line has %d cells", r->count);
+    drop_empty_cells(r, cells);
+    if (r->count > cells)
+        return lens_wrong(r, cells, "give as many cells as the header", "the line has %d cells, the header %d",
+                          r->count, cells);
+    if (r->count <= at[COLUMN_THICKNESS])
+        return lens_wrong(r, -1, "complete the line", "the thickness is missing");
     lens_surface *s = lens_append(r, &code);
     if (!s)
         return code;
@@ -247,8 +269,8 @@ static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS])
 
 static status read_csv(lens_reader *r, char *text)
 {
-    int at[LENS_COLUMNS];
-    bool has_header = false;
+    int at[LENS_COLUMNS], cells = 0;
+    unsigned seen = 0; /* keys, bit by bit */
     while (text) {
         char *line = strsep(&text, "\n");
         r->line++;
@@ -256,14 +278,22 @@ static status read_csv(lens_reader *r, char *text)
             continue;
         lens_divide(r, line, true);
         const int key = index_of(r->word[0], lens_key_words, LENS_KEYS);
-        if (has_header)
-            TRY(read_csv_row(r, at));
-        else if (key >= 0)
+        if (cells > 0) {
+            TRY(read_csv_row(r, at, cells));
+            continue;
+        }
+        drop_empty_cells(r, 1);
+        if (key >= 0 && (seen & 1u << key))
+            return lens_wrong(r, 0, "keep one of them", "%s is given twice", r->word[0]);
+        if (key >= 0) {
+            seen |= 1u << key;
             TRY(read_key(r, key));
-        else if (index_of(r->word[0], lens_column_words, LENS_COLUMNS) >= 0)
-            TRY((has_header = true, read_header(r, at)));
-        else
+        } else if (index_of(r->word[0], lens_column_words, LENS_COLUMNS) >= 0) {
+            cells = r->count;
+            TRY(read_header(r, at));
+        } else {
             return unknown(r, 0, "key", lens_key_words, LENS_KEYS);
+        }
     }
     return STATUS_OK;
 }
@@ -289,12 +319,18 @@ bool lens_file_named(const char *path)
     return format_of(path) != NULL;
 }
 
-/* Titles and names become part of scene files: without control characters, and bytes whose encoding is not known. */
+/* Titles and names become part of scene files: UTF-8 without control characters; one that was cut has a blank for the
+ * rest of its last character. */
 static void make_plain(char *text)
 {
-    for (; *text; text++)
-        if ((unsigned char)*text < 0x20 || (unsigned char)*text > 0x7e)
-            *text = ' ';
+    for (size_t length; *text; text += length) {
+        uint32_t c = 0;
+        length = text_utf8(text, &c);
+        const bool bad = length == 0 || c < 0x20 || (c > 0x7e && c < 0xa0);
+        length = length > 0 ? length : 1;
+        if (bad)
+            memset(text, ' ', length);
+    }
 }
 
 /* What no reader has checked: that the numbers are of a size with which one can compute. */
@@ -318,6 +354,39 @@ static status check(const lens_reader *r)
         if (fabs(s->tilt_x_deg) > TILT_MAX || fabs(s->tilt_y_deg) > TILT_MAX)
             return lens_wrong(&at, -1, "tilt it by at most 80 degrees", "the mirror, surface %zu, is along the axis",
                               i + 1);
+        if (s->hole > 0.0 && !s->mirror) {
+            lens_note_item(r->p, "not read", "the inner radius of the aperture of surface %zu, which is no mirror",
+                           i + 1);
+            r->p->surface[i].hole = 0.0;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* What contradicts itself. thickness: the last one, as stated; 0 for none. */
+static void note_contradictions(lens_prescription *p, double thickness)
+{
+    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    if (thickness != 0.0 && isfinite(f.image) && fabs(f.image - thickness) > 0.1 * fabs(f.efl))
+        lens_note(p, "the image is %.6g after the last surface, but the paraxial focus is at %.6g", thickness, f.image);
+}
+
+/* A catalogue that holds no glass is another file. */
+static status check_glasses(const lens_glasses *glasses, diagnostic *why)
+{
+    for (size_t i = 0; glasses && i < glasses->count; i++) {
+        char *text;
+        size_t size;
+        TRY(file_read_below(glasses->file[i], glasses->root, GLASS_BYTES_MAX, &text, &size, why));
+        char *plain = text_narrow(text, size);
+        free(text);
+        if (!plain)
+            return out_of_memory(why);
+        const bool any = strncmp(plain, "NM ", 3) == 0 || strstr(plain, "\nNM ");
+        free(plain);
+        if (!any)
+            return diagnose_at(why, glasses->file[i], STATUS_BAD_INPUT, "give a glass catalogue (.agf)",
+                               "no line begins with NM, the name of a glass");
     }
     return STATUS_OK;
 }
@@ -334,13 +403,16 @@ status lens_file_parse(const char *name, const char *text, size_t size, const le
     if (!plain)
         return out_of_memory(why);
     lens_reader r = {.name = name, .glasses = glasses, .p = out, .why = why};
-    status code = format->read(&r, plain);
+    status code = check_glasses(glasses, why);
+    THEN(code, format->read(&r, plain));
     r.line = 0;
     THEN(code, check(&r));
     free(plain);
-    if (code == STATUS_OK)
+    const double thickness = out->count > 0 ? out->surface[out->count - 1].thickness : 0.0;
+    if (code == STATUS_OK) {
         lens_prescription_complete(out);
-    else
+        note_contradictions(out, thickness);
+    } else
         lens_prescription_release(out);
     return code;
 }

@@ -5,7 +5,6 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,18 +13,6 @@
 #define RING_THICKNESS 1e-4 /* of stops and mounts, of a diameter */
 
 /* --- media --- */
-
-/* A material's name: that of the glass in lower case, or glass-1-517-64-2 for numbers. */
-static void material_name(const lens_medium *m, object_name name)
-{
-    char word[LENS_NAME_MAX];
-    lens_medium_text(m, word);
-    const bool number = isdigit((unsigned char)word[0]);
-    size_t used = (size_t)snprintf(name, sizeof(object_name), "%s", number ? "glass-" : "");
-    for (const char *c = word; *c && used < 60; c++)
-        name[used++] = isalnum((unsigned char)*c) || *c == '_' ? (char)tolower((unsigned char)*c) : '-';
-    name[used] = 0;
-}
 
 /* Indices of prescriptions are relative to air. In surroundings of index 1, which stand for air, they are used as they
  * are; otherwise they are multiplied by the index of air. */
@@ -57,7 +44,7 @@ static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
 /* The name of the material of a medium; the scene's own material of that name has precedence. */
 void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name)
 {
-    material_name(m, name);
+    lens_material_name(m, name);
     if (lens_has(b->t.s, PARAM_MATERIAL, name))
         return;
     THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));

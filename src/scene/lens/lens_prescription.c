@@ -23,7 +23,9 @@ lens_prescription lens_prescription_empty(void)
 void lens_prescription_release(lens_prescription *p)
 {
     free(p->surface);
+    free(p->kept);
     p->surface = NULL;
+    p->kept = NULL;
     p->count = 0;
 }
 
@@ -62,6 +64,19 @@ double lens_surface_sag(const lens_surface *s, double rho)
 double lens_index_after(const lens_surface *s, double before, double lambda_nm)
 {
     return s->mirror ? -before : copysign(lens_medium_index(&s->medium, lambda_nm), before);
+}
+
+lens_vignetting lens_vignetting_of(const lens_prescription *p, double x, double y)
+{
+    for (size_t i = 0; i < p->field_count; i++)
+        if (p->field[i].x == x && p->field[i].y == y)
+            return p->vignetting[i];
+    return (lens_vignetting){0};
+}
+
+double lens_vignetting_factor(const lens_vignetting *v, size_t k)
+{
+    return k == 0 ? v->shift_x : k == 1 ? v->shift_y : k == 2 ? v->squeeze_x : v->squeeze_y;
 }
 
 double lens_field_most(const lens_prescription *p)

@@ -6,7 +6,7 @@
  * to the next vertex, and is below 0 where the light travels back after a mirror. Lengths are in the unit of the
  * prescription, unit_mm millimetres.
  *
- * Ownership: lens_prescription_release frees the surfaces; names are within the structure. A law's optical data are
+ * Ownership: lens_prescription_release frees the surfaces and `kept`; names are within the structure. A law's optical data are
  * borrowed from the scene or held by the caller. Errors: STATUS_BAD_INPUT with file, line, column and remedy. */
 #pragma once
 
@@ -71,6 +71,12 @@ typedef struct lens_field {
     double x, y, weight;
 } lens_field;
 
+/* Vignetting factors of a field, as design programs have them: its rays fill the ellipse about (shift_x, shift_y) with
+ * the half axes 1 - squeeze_x and 1 - squeeze_y, in units of the pupil's radius. All 0: the whole pupil. */
+typedef struct lens_vignetting {
+    double shift_x, shift_y, squeeze_x, squeeze_y;
+} lens_vignetting;
+
 typedef struct lens_wavelength {
     double nm, weight;
 } lens_wavelength;
@@ -89,11 +95,15 @@ typedef struct lens_prescription {
     double aperture; /* by its kind; 0 for LENS_APERTURE_STOP */
     lens_field_kind field_kind;
     lens_field field[LENS_LIST_MAX];
-    size_t field_count; /* at least 1: the axis */
+    size_t field_count;                        /* at least 1: the axis */
+    lens_vignetting vignetting[LENS_LIST_MAX]; /* of the fields */
     lens_wavelength wavelength[LENS_LIST_MAX];
     size_t wavelength_count; /* at least 1: 587.5618 nm */
     size_t primary;          /* index of the primary wavelength */
-    char note[512];          /* what of the file was not read, or was assumed; "" for nothing */
+    char note[2048];         /* what of the file was not read, or was assumed; "" for nothing */
+    /* What a .zmx file holds that nothing here uses, for a writer of that format: lines "N TEXT", where N is the line
+     * of their surface (lens_surface.line), 0 for the system, -1 after the surfaces. NULL: nothing. */
+    char *kept;
 } lens_prescription;
 
 /* Without surfaces: mm, object at infinity, in air, on the axis, at 587.5618 nm. */
@@ -118,6 +128,12 @@ mat3 lens_fold(const lens_surface *s);
 /* The index after a surface, from that before it. Indices are below 0 where the light travels back, as in textbooks on
  * mirrors (Welford, Aberrations of Optical Systems). Pure. */
 double lens_index_after(const lens_surface *s, double before, double lambda_nm);
+
+/* The vignetting factors of the field with these coordinates; all 0 if it is none of the prescription's. Pure. */
+lens_vignetting lens_vignetting_of(const lens_prescription *p, double x, double y);
+
+/* shift_x, shift_y, squeeze_x and squeeze_y by number. Pure. */
+double lens_vignetting_factor(const lens_vignetting *v, size_t k);
 
 /* The largest distance of a field from the axis, in the unit of the fields. Pure. */
 double lens_field_most(const lens_prescription *p);
@@ -163,15 +179,18 @@ void lens_prescription_complete(lens_prescription *p);
  *   .csv   tables with a header (lens_files.c states its keys and columns), which hold everything
  * Ownership: the caller releases the prescription. Errors: STATUS_BAD_INPUT with the file, line, column and remedy. */
 
-/* Catalogue files of glasses (.agf), in which names are looked up that the catalogue of media lacks. Borrowed. */
+/* Where names of glasses are looked up before the catalogue of media: a scene's materials, then catalogue files (.agf).
+ * Borrowed. */
 typedef struct lens_glasses {
     const char *const *file; /* relative to the working folder */
     size_t count;
     const char *root; /* folder of all files that may be read (base/file.h); NULL: no restriction */
+    const scene *own; /* a material that has a glass's name in lower case is that glass; NULL: none */
 } lens_glasses;
 
 /* The columns and keys of .csv files (lens_files.c). */
-enum { LENS_COLUMNS = 19, LENS_KEYS = 11 };
+/* The last four keys are vignetting factors, which scenes do not hold. */
+enum { LENS_COLUMNS = 19, LENS_KEYS = 15, LENS_SCENE_KEYS = 11 };
 extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
 
 /* Whether a path ends as such a file does. */
@@ -183,8 +202,9 @@ status lens_file_read(const char *path, const lens_glasses *glasses, lens_prescr
 status lens_file_parse(const char *name, const char *text, size_t size, const lens_glasses *glasses,
                        lens_prescription *out, diagnostic *why);
 
-/* The medium of a word: "" or air; a medium of the catalogue in any usual spelling (N-BK7); a glass of the files; n/V,
- * such as 1.5168/64.2; a six-digit glass code; or a constant index. The remedy of the error has no position. */
+/* The medium of a word: "" or air; n/V, such as 1.5168/64.2; a six-digit glass code; a constant index; a material of
+ * the scene, unless its index is that of a file; a glass of the files; or a medium of the catalogue in any usual
+ * spelling (N-BK7). The remedy of the error has no position. */
 status lens_medium_parse(const char *word, const lens_glasses *glasses, lens_medium *out, diagnostic *why);
 /* The medium of n_d and V_d; V_d 0: a constant index. */
 lens_medium lens_medium_of_numbers(double n_d, double V_d);
@@ -193,6 +213,8 @@ char *lens_medium_text(const lens_medium *m, char *text);
 
 /* Writes a prescription in the format of the path's ending. STATUS_BAD_INPUT if the format cannot hold it. */
 status lens_file_write(const lens_prescription *p, const char *path, FILE *out, diagnostic *why);
+/* What of the prescription the format does not hold, as words for a note; NULL for nothing. */
+const char *lens_file_lacks(const lens_prescription *p, const char *path);
 
 /* Lens systems as solids of a scene, and back. Each element is a solid of shape lens with its own medium; cemented
  * elements overlap, and the one with the higher priority has the true surface, so that no faces coincide.

@@ -5,8 +5,11 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/assets/optical_files.h"
+#include "scene/model/names.h"
+#include "scene/model/scene.h"
 
 #include <ctype.h>
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -27,16 +30,74 @@ status lens_wrong(const lens_reader *r, int word, const char *remedy, const char
     return code;
 }
 
+/* Inserts a text into the note at a place; what does not fit is told by dots, once. */
+static void note_insert(lens_prescription *p, size_t at, const char *text)
+{
+    static const char more[] = "; ...";
+    const size_t used = strlen(p->note), length = strlen(text);
+    if (used + length + sizeof more < sizeof p->note) {
+        memmove(p->note + at + length, p->note + at, used - at + 1);
+        memcpy(p->note + at, text, length);
+    } else if (used >= sizeof more && strcmp(p->note + used - sizeof more + 1, more) != 0) {
+        memcpy(p->note + used, more, sizeof more);
+    }
+}
+
+/* The part of the note that begins so, NULL for none; ends: its end. */
+static const char *note_part(const lens_prescription *p, const char *head, const char **ends)
+{
+    const size_t length = strlen(head);
+    for (const char *at = p->note; *at; at = **ends ? *ends + 2 : *ends) {
+        *ends = strstr(at, "; ") ? strstr(at, "; ") : at + strlen(at);
+        if (strncmp(at, head, length) == 0 && (at + length == *ends || at[length] == ':'))
+            return at;
+    }
+    return NULL;
+}
+
 void lens_note(lens_prescription *p, const char *format, ...)
 {
-    const size_t used = strlen(p->note);
-    char text[200];
+    char text[400];
+    const char *ends;
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    if (used + strlen(text) + 3 < sizeof p->note)
-        snprintf(p->note + used, sizeof p->note - used, "%s%s", used ? "; " : "", text);
+    if (note_part(p, text, &ends))
+        return;
+    if (p->note[0])
+        note_insert(p, strlen(p->note), "; ");
+    note_insert(p, strlen(p->note), text);
+}
+
+void lens_note_item(lens_prescription *p, const char *head, const char *format, ...)
+{
+    char item[120], text[124];
+    const char *ends;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(item, sizeof item, format, list);
+    va_end(list);
+    const char *part = note_part(p, head, &ends);
+    if (!part) {
+        lens_note(p, "%s: %s", head, item);
+        return;
+    }
+    const size_t length = strlen(item);
+    for (const char *at = part + strlen(head); at < ends; at++)
+        if ((at[-1] == ' ') && strncmp(at, item, length) == 0 && (at + length == ends || at[length] == ','))
+            return;
+    snprintf(text, sizeof text, ", %s", item);
+    note_insert(p, (size_t)(ends - p->note), text);
+}
+
+double lens_short_number(double x)
+{
+    char text[NUMBER_TEXT_MAX];
+    double y = x;
+    if (isfinite(x))
+        number_parse_real(number_format_digits(x, 12, text), &y);
+    return fabs(y - x) <= 4.0 * DBL_EPSILON * fabs(x) ? y : x;
 }
 
 void lens_divide(lens_reader *r, char *line, bool commas)
@@ -64,6 +125,19 @@ status lens_number(const lens_reader *r, int i, const char *what, double *out)
         return lens_wrong(r, -1, "complete the line", "%s is missing", what);
     if (!number_parse_real(r->word[i], out) || !isfinite(*out))
         return lens_wrong(r, i, "give a number, such as 12.5", "%s: '%.40s' is not a number", what, r->word[i]);
+    return STATUS_OK;
+}
+
+status lens_read_vignetting(const lens_reader *r, size_t which)
+{
+    for (int i = 1; i < r->count && i <= LENS_LIST_MAX; i++) {
+        lens_vignetting *v = &r->p->vignetting[i - 1];
+        double *const to[] = {&v->shift_x, &v->shift_y, &v->squeeze_x, &v->squeeze_y};
+        TRY(lens_number(r, i, "a vignetting factor", to[which]));
+        if (!(fabs(*to[which]) < 10.0) || (which > 1 && *to[which] >= 1.0))
+            return lens_wrong(r, i, "give a factor below 1; 0 for the whole pupil",
+                              "the vignetting factor %g is out of range", *to[which]);
+    }
     return STATUS_OK;
 }
 
@@ -145,6 +219,24 @@ static status glass_of_text(const char *path, const char *text, size_t size, con
     return STATUS_OK;
 }
 
+/* The scene's own material of that name. The index of data is not known before they are loaded. */
+static bool find_in_scene(const scene *s, const char *word, lens_medium *out)
+{
+    lens_medium m = {.kind = LENS_DATA, .glass_file = -1};
+    object_name name;
+    snprintf(m.name, sizeof m.name, "%.63s", word);
+    lens_material_name(&m, name);
+    const int at = object_find(s, PARAM_MATERIAL, name);
+    if (at < 0 || s->materials[at].value.medium == MEDIUM_DATA ||
+        material_index_law(&s->materials[at].value, name, &m.law, NULL) != STATUS_OK)
+        return false;
+    m.n_d = lens_medium_index(&m, LINE_HELIUM_D_NM);
+    const double F = lens_medium_index(&m, LINE_HYDROGEN_F_NM), C = lens_medium_index(&m, LINE_HYDROGEN_C_NM);
+    m.V_d = F != C ? (m.n_d - 1.0) / (F - C) : 0.0;
+    *out = m;
+    return true;
+}
+
 /* A line "NM name formula code n_d V_d ..." of the file with that name. */
 static status find_in_file(const char *path, const char *root, const char *word, lens_medium *out, bool *found,
                            diagnostic *why)
@@ -189,20 +281,44 @@ static bool find_numbers(const char *word, lens_medium *out)
     return true;
 }
 
+/* The name under which a glass is known, of which the word is a variant: with the N- of newer glasses, or without. */
+static bool find_variant(const char *word, const lens_glasses *glasses, char name[LENS_NAME_MAX])
+{
+    const bool newer = strncasecmp(word, "N-", 2) == 0;
+    snprintf(name, LENS_NAME_MAX, "%s%.50s", newer ? "" : "N-", word + (newer ? 2 : 0));
+    lens_medium m;
+    bool found = find_in_catalogue(name, &m);
+    for (size_t i = 0; glasses && i < glasses->count && !found; i++)
+        if (find_in_file(glasses->file[i], glasses->root, name, &m, &found, NULL) != STATUS_OK)
+            found = false;
+    return found;
+}
+
+static status unknown_glass(const char *word, const lens_glasses *glasses, diagnostic *why)
+{
+    char name[LENS_NAME_MAX], hint[LENS_NAME_MAX + 64] = "", remedy[400];
+    if (find_variant(word, glasses, name))
+        snprintf(hint, sizeof hint, "%s is known: write it if that will do; or ", name);
+    snprintf(remedy, sizeof remedy,
+             "%sgive the maker's catalogue with -g FILE.agf (in a scene: glasses: FILE.agf); or write n_d/V_d, such as "
+             "1.62041/60.3, by which other colours are near, not exact",
+             hint);
+    return diagnose(why, STATUS_BAD_INPUT, remedy,
+                    "the glass '%.60s' is neither in the catalogue nor in a file of glasses", word);
+}
+
 status lens_medium_parse(const char *word, const lens_glasses *glasses, lens_medium *out, diagnostic *why)
 {
     *out = (lens_medium){.kind = LENS_AIR, .glass_file = -1};
     if (is_air(word))
         return STATUS_OK;
-    bool found = find_in_catalogue(word, out) || find_numbers(word, out);
+    bool found = find_numbers(word, out) || (glasses && glasses->own && find_in_scene(glasses->own, word, out));
     for (size_t i = 0; glasses && i < glasses->count && !found; i++) {
         TRY(find_in_file(glasses->file[i], glasses->root, word, out, &found, why));
         out->glass_file = (int)i;
     }
-    if (!found)
-        return diagnose(why, STATUS_BAD_INPUT,
-                        "write n_d/V_d, such as 1.62041/60.3, or give the maker's catalogue: glasses FILE.agf",
-                        "the glass '%.60s' is neither in the catalogue nor in a file of glasses", word);
+    if (!found && !find_in_catalogue(word, out))
+        return unknown_glass(word, glasses, why);
     if (!out->name[0] && (out->kind == LENS_CATALOGUE || out->kind == LENS_DATA))
         snprintf(out->name, sizeof out->name, "%s", media_usual_name(word));
     return STATUS_OK;
@@ -219,6 +335,17 @@ char *lens_medium_text(const lens_medium *m, char *text)
     case LENS_CONSTANT: snprintf(text, LENS_NAME_MAX, "%s", number_format(m->n_d, n)); break;
     }
     return text;
+}
+
+void lens_material_name(const lens_medium *m, object_name name)
+{
+    char word[LENS_NAME_MAX];
+    lens_medium_text(m, word);
+    const bool number = isdigit((unsigned char)word[0]);
+    size_t used = (size_t)snprintf(name, sizeof(object_name), "%s", number ? "glass-" : "");
+    for (const char *c = word; *c && used < 60; c++)
+        name[used++] = isalnum((unsigned char)*c) || *c == '_' ? (char)tolower((unsigned char)*c) : '-';
+    name[used] = 0;
 }
 
 /* --- glasses of Zemax's files --- */
@@ -254,8 +381,8 @@ status lens_read_glass(const lens_reader *r, lens_surface *s)
         return code;
     }
     if (!has_numbers || is_placeholder(n, V))
-        return lens_wrong(r, 1, "give the maker's catalogue: glasses FILE.agf", "%s", bad.what);
+        return lens_wrong(r, 1, bad.remedy, "%s", bad.what);
     s->medium = lens_medium_of_numbers(n, V);
-    lens_note(r->p, "%.20s by its n_d and V_d", r->word[1]);
+    lens_note_item(r->p, "by n_d and V_d, which do not tell the index of other colours exactly", "%.20s", r->word[1]);
     return STATUS_OK;
 }

@@ -13,7 +13,8 @@ typedef struct lens_reader {
     const char *name;
     const lens_glasses *glasses;
     lens_prescription *p;
-    size_t room; /* of p->surface */
+    size_t room;            /* of p->surface */
+    size_t kept, kept_room; /* bytes of p->kept */
     long line;
     char *word[LENS_WORDS_MAX]; /* of the line; the text is changed */
     int column[LENS_WORDS_MAX], count;
@@ -33,8 +34,18 @@ lens_surface *lens_append(lens_reader *r, status *code);
 status lens_read_medium(const lens_reader *r, int i, const char *word, lens_medium *out);
 /* The medium after a surface of a .zmx file, of the line GLAS name kind pickup n_d V_d ... */
 status lens_read_glass(const lens_reader *r, lens_surface *s);
-/* Adds a remark to the prescription's note. */
+/* The name of its material in a scene: that of the glass in lower case, or glass-1-517-64-2 for numbers. */
+void lens_material_name(const lens_medium *m, object_name name);
+/* Adds a remark to the prescription's note, unless it is there. */
 void lens_note(lens_prescription *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Adds an item to the remark "HEAD: item, item", unless it is there. */
+void lens_note_item(lens_prescription *p, const char *head, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The number of at most 12 digits that differs from x by rounding alone; x if there is none. Pure. */
+double lens_short_number(double x);
+
+/* A list of one of the vignetting factors, one for each field (lens_vignetting_factor). */
+status lens_read_vignetting(const lens_reader *r, size_t which);
 
 status lens_read_zmx(lens_reader *r, char *text);
 
@@ -64,6 +75,20 @@ typedef struct lens_break {
 } lens_break;
 /* Takes the breaks out of the surfaces, the first of which is the object and the last the image. */
 status lens_take_breaks(lens_reader *r, const lens_break *breaks);
+/* --- lens_zmx_rest.c: what a .zmx file holds besides the prescription --- */
+
+/* A line whose word lens_zmx.c does not read. It is kept for a writer (lens_prescription.kept), and noted if it acts on
+ * light; an error if the word is a mistake for one that is read. of: the surface's line, 0 for the system. */
+status lens_zmx_other(lens_reader *r, long of, const char *line);
+/* Keeps a line. */
+status lens_zmx_keep(lens_reader *r, long of, const char *line);
+/* Writes the kept lines of a surface, of the system (0) or after the surfaces (-1), but those of CURV, DIAM, VERS. */
+void lens_zmx_put_kept(const lens_prescription *p, long of, FILE *out);
+/* What follows the value in the kept line with that word (of the system: the word itself), or `usual`, and the end of
+ * the line. */
+void lens_zmx_put_tail(const lens_prescription *p, long of, const char *word, const char *usual, FILE *out);
+/* Checks that the last surface can be the image. has_distance: it has a line DISZ. */
+status lens_zmx_check_image(lens_reader *r, bool has_distance);
 
 /* Sets parameters of a scene by name, one after the other, until the first error. */
 

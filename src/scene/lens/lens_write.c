@@ -1,8 +1,10 @@
 /* Writes lens files (lens_prescription.h). */
 #include "base/number.h"
 #include "scene/lens/lens_prescription.h"
+#include "scene/lens/lens_reader.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -21,6 +23,24 @@ static void put_text(FILE *out, const char *text, bool commas)
 }
 
 /* --- .csv --- */
+
+static bool is_vignetted(const lens_prescription *p)
+{
+    bool any = false;
+    for (size_t i = 0; i < p->field_count; i++)
+        for (size_t k = 0; k < 4; k++)
+            any |= lens_vignetting_factor(&p->vignetting[i], k) != 0.0;
+    return any;
+}
+
+static void put_vignetting(const lens_prescription *p, FILE *out)
+{
+    for (size_t k = 0; k < 4 && is_vignetted(p); k++) {
+        fprintf(out, "\n%s", lens_key_words[LENS_SCENE_KEYS + k]);
+        for (size_t i = 0; i < p->field_count; i++)
+            put_number(out, ",", lens_vignetting_factor(&p->vignetting[i], k));
+    }
+}
 
 static void put_system(const lens_prescription *p, FILE *out)
 {
@@ -41,6 +61,7 @@ static void put_system(const lens_prescription *p, FILE *out)
     fprintf(out, "\n%s", p->field_kind == LENS_FIELD_ANGLE ? "field_deg" : "field_height");
     for (size_t i = 0; i < p->field_count; i++)
         put_number(out, ",", p->field[i].x == 0.0 ? p->field[i].y : hypot(p->field[i].x, p->field[i].y));
+    put_vignetting(p, out);
     fputs("\nwavelength_nm", out);
     put_number(out, ",", p->wavelength[p->primary].nm);
     for (size_t i = 0; i < p->wavelength_count; i++)
@@ -156,7 +177,20 @@ static void put_zmx_break(size_t number, const lens_surface *s, double thickness
     put_number(out, "  DISZ ", thickness), fputc('\n', out);
 }
 
-static void put_zmx_surface(size_t number, const lens_surface *s, bool stop, FILE *out)
+/* The shortest curvature that a reader takes for that radius. */
+static void put_curvature(double radius, FILE *out)
+{
+    char text[NUMBER_TEXT_MAX] = "0";
+    double c = 0.0;
+    for (int digits = 1; digits <= 17 && radius != 0.0; digits++) {
+        number_parse_real(number_format_digits(1.0 / radius, digits, text), &c);
+        if (lens_short_number(1.0 / c) == radius)
+            break;
+    }
+    fprintf(out, "  CURV %s", text);
+}
+
+static void put_zmx_surface(const lens_prescription *p, size_t number, const lens_surface *s, bool stop, FILE *out)
 {
     bool even = false;
     for (int k = 0; k < LENS_EVEN_TERMS; k++)
@@ -170,9 +204,8 @@ static void put_zmx_surface(size_t number, const lens_surface *s, bool stop, FIL
         put_text(out, s->name, true);
         fputc('\n', out);
     }
-    char text[64];
-    snprintf(text, sizeof text, "%.17g", s->radius == 0.0 ? 0.0 : 1.0 / s->radius);
-    fprintf(out, "  CURV %s 0 0 0 0 \"\"\n", text);
+    put_curvature(s->radius, out);
+    lens_zmx_put_tail(p, s->line > 0 ? s->line : LONG_MAX, "CURV", " 0 0 0 0 \"\"", out);
     for (int k = 0; k < LENS_EVEN_TERMS; k++)
         if (s->even[k] != 0.0) {
             fprintf(out, "  PARM %d", k + 2);
@@ -187,12 +220,44 @@ static void put_zmx_surface(size_t number, const lens_surface *s, bool stop, FIL
     if (s->conic != 0.0)
         put_number(out, "  CONI ", s->conic), fputc('\n', out);
     put_number(out, "  DIAM ", 0.5 * s->diameter);
-    fputs(" 1 0 0 1 \"\"\n", out);
+    lens_zmx_put_tail(p, s->line > 0 ? s->line : LONG_MAX, "DIAM", " 1 0 0 1 \"\"", out);
     if (s->hole > 0.0) {
-        put_number(out, "  CLAP 0 ", 0.5 * s->hole);
+        put_number(out, "  CLAP ", 0.5 * s->hole);
         put_number(out, " ", 0.5 * s->diameter);
-        fputc('\n', out);
+        fputs(" 0\n", out);
     }
+    if (s->line > 0)
+        lens_zmx_put_kept(p, s->line, out);
+}
+
+static void put_zmx_fields(const lens_prescription *p, FILE *out)
+{
+    static const char *const factors[] = {"VDXN", "VDYN", "VCXN", "VCYN"};
+    fprintf(out, "FTYP %d 0 %zu %zu 0 0 0\nXFLN", p->field_kind == LENS_FIELD_OBJECT, p->field_count,
+            p->wavelength_count);
+    for (size_t i = 0; i < p->field_count; i++)
+        put_number(out, " ", p->field[i].x);
+    fputs("\nYFLN", out);
+    for (size_t i = 0; i < p->field_count; i++)
+        put_number(out, " ", p->field[i].y);
+    for (size_t k = 0; k < 4; k++) {
+        fprintf(out, "\n%s", factors[k]);
+        for (size_t i = 0; i < p->field_count; i++)
+            put_number(out, " ", lens_vignetting_factor(&p->vignetting[i], k));
+    }
+}
+
+/* The shortest number of micrometres that a reader takes for that wavelength. */
+static void put_micrometres(double nm, FILE *out)
+{
+    char text[NUMBER_TEXT_MAX];
+    double um;
+    for (int digits = 1; digits <= 17; digits++) {
+        number_parse_real(number_format_digits(nm / 1000.0, digits, text), &um);
+        if (lens_short_number(1000.0 * um) == nm)
+            break;
+    }
+    fprintf(out, " %s", text);
 }
 
 static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
@@ -213,41 +278,40 @@ static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
     if (!unit)
         return diagnose(why, STATUS_BAD_INPUT, "set render.unit_m to 0.001, 0.01, 0.0254 or 1, or write a .csv file",
                         "a .zmx file has no unit of %g mm", p->unit_mm);
-    fputs("VERS 181005 0 0\nMODE SEQ\nNAME ", out);
+    fputs("VERS", out);
+    lens_zmx_put_tail(p, 0, "VERS", " 181005 0 0", out);
+    fputs("MODE SEQ\nNAME ", out);
     put_text(out, p->title, true);
-    fprintf(out, "\nUNIT %s X W X CM MR CPMM\n", unit);
+    fputc('\n', out);
+    lens_zmx_put_kept(p, 0, out);
+    fprintf(out, "UNIT %s X W X CM MR CPMM\n", unit);
     if (p->aperture_kind == LENS_APERTURE_STOP)
         fputs("FLOA\n", out);
     else
         put_number(out, apertures[p->aperture_kind], p->aperture), fputs(" 0\n", out);
-    fprintf(out, "FTYP %d 0 %zu %zu 0 0 0\nXFLN", p->field_kind == LENS_FIELD_OBJECT, p->field_count,
-            p->wavelength_count);
-    for (size_t i = 0; i < p->field_count; i++)
-        put_number(out, " ", p->field[i].x);
-    fputs("\nYFLN", out);
-    for (size_t i = 0; i < p->field_count; i++)
-        put_number(out, " ", p->field[i].y);
+    put_zmx_fields(p, out);
     for (size_t i = 0; i < p->wavelength_count; i++) {
         fprintf(out, "\nWAVM %zu", i + 1);
-        put_number(out, " ", p->wavelength[i].nm / 1000.0);
+        put_micrometres(p->wavelength[i].nm, out);
         put_number(out, " ", p->wavelength[i].weight);
     }
     fprintf(out, "\nPWAV %zu\n", p->primary + 1);
     const lens_surface object = {.thickness = p->object_distance, .medium = {.kind = LENS_AIR}},
                        plane = {.radius = p->image_radius, .diameter = p->image_diameter, .medium = {.kind = LENS_AIR}};
     size_t number = 0;
-    put_zmx_surface(number++, &object, false, out);
+    put_zmx_surface(p, number++, &object, false, out);
     for (size_t i = 0; i < p->count; i++) {
         lens_surface s = p->surface[i];
         const double thickness = s.thickness;
         const bool folds = lens_folds(&s);
         if (folds)
             put_zmx_break(number++, &s, 0.0, out), s.thickness = 0.0;
-        put_zmx_surface(number++, &s, (int)i == p->stop, out);
+        put_zmx_surface(p, number++, &s, (int)i == p->stop, out);
         if (folds)
             put_zmx_break(number++, &s, thickness, out);
     }
-    put_zmx_surface(number, &plane, false, out);
+    put_zmx_surface(p, number, &plane, false, out);
+    lens_zmx_put_kept(p, -1, out);
     return STATUS_OK;
 }
 
@@ -260,4 +324,27 @@ status lens_file_write(const lens_prescription *p, const char *path, FILE *out, 
     if (strcasecmp(ending, ".dat") == 0)
         return write_dat(p, out, why);
     return write_csv(p, out, why);
+}
+
+const char *lens_file_lacks(const lens_prescription *p, const char *path)
+{
+    const size_t length = strlen(path);
+    const char *ending = length > 4 ? path + length - 4 : "";
+    bool aside = false, weighted = false, named = false;
+    for (size_t i = 0; i < p->field_count; i++)
+        aside |= p->field[i].x != 0.0;
+    for (size_t i = 0; i < p->wavelength_count; i++)
+        weighted |= p->wavelength[i].weight != p->wavelength[0].weight;
+    for (size_t i = 0; i < p->count; i++)
+        named |= p->surface[i].medium.kind == LENS_CATALOGUE || p->surface[i].medium.kind == LENS_DATA;
+    if (strcasecmp(ending, ".dat") == 0)
+        return named || p->field_count > 1 || p->wavelength_count > 1 || p->aperture_kind != LENS_APERTURE_STOP ||
+                       isfinite(p->object_distance)
+                   ? "names of glasses (n_d and V_d stand for them), the aperture, the object, fields and wavelengths"
+                   : NULL;
+    if (strcasecmp(ending, ".csv") != 0 || (!aside && !weighted))
+        return NULL;
+    return aside && weighted ? "the direction of fields across y and the weights of wavelengths"
+           : aside           ? "the direction of fields across y"
+                             : "the weights of wavelengths";
 }

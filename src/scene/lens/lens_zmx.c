@@ -2,9 +2,11 @@
  * lines of a surface follow its line SURF. Surface 0 is the object, the last one the image. Zemax, OpticStudio User
  * Guide. */
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/lens/lens_reader.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -12,11 +14,14 @@
 typedef struct zmx_reader {
     lens_reader *r;
     bool in_surface;
+    bool has_distance, has_aperture; /* of the surface: DISZ; CLAP or FLAP, before which DIAM stands back */
+    bool has_stop_size;              /* of the system: ENPD, FNUM, OBNA or FLOA */
     int field_type;
     double x[LENS_LIST_MAX], y[LENS_LIST_MAX];
     int fields, waves; /* as FTYP says; 0: by the values */
     int primary;
     lens_break breaks[LENS_SURFACES_MAX];
+    long primary_line;
 } zmx_reader;
 
 static lens_surface *surface_of(const zmx_reader *z)
@@ -72,9 +77,10 @@ static status read_parameter(zmx_reader *z)
     return STATUS_OK;
 }
 
-static status read_thickness(const zmx_reader *z)
+static status read_thickness(zmx_reader *z)
 {
     double value;
+    z->has_distance = true;
     TRY(read_length(z->r, "DISZ", &value));
     if (isinf(value) && z->r->p->count > 1)
         return lens_wrong(z->r, 1, "give a distance", "only the object can be infinitely far away");
@@ -92,20 +98,32 @@ static status read_diameter(const zmx_reader *z, int word, double *out)
     return STATUS_OK;
 }
 
-/* CLAP decentre least most: a circular aperture with a hole's rim as its least radius. */
-static status read_aperture(const zmx_reader *z)
+/* CLAP least most, and FLAP: a circular aperture, which precedes the semi-diameter; the least radius is a hole's. */
+static status read_aperture(zmx_reader *z)
 {
     lens_surface *s = surface_of(z);
-    const int first = z->r->count > 3 ? 2 : 1;
-    TRY(read_diameter(z, first, &s->hole));
-    return s->diameter > 0.0 ? STATUS_OK : read_diameter(z, first + 1, &s->diameter);
+    double most = 0.0;
+    TRY(read_diameter(z, 1, &s->hole));
+    TRY(read_diameter(z, 2, &most));
+    if (most > 0.0)
+        s->diameter = most, z->has_aperture = true;
+    return STATUS_OK;
+}
+
+static status read_rim(const zmx_reader *z)
+{
+    double diameter = 0.0;
+    TRY(read_diameter(z, 1, &diameter));
+    if (!z->has_aperture)
+        surface_of(z)->diameter = diameter;
+    return STATUS_OK;
 }
 
 static status read_curvature(const zmx_reader *z)
 {
     double c;
     TRY(lens_number(z->r, 1, "CURV", &c));
-    surface_of(z)->radius = c == 0.0 ? 0.0 : 1.0 / c;
+    surface_of(z)->radius = c == 0.0 ? 0.0 : lens_short_number(1.0 / c);
     return STATUS_OK;
 }
 
@@ -118,11 +136,12 @@ static void read_comment(const lens_reader *r, char *to, size_t size)
     }
 }
 
-static status read_surface_line(zmx_reader *z)
+static status read_surface_line(zmx_reader *z, bool *known)
 {
     const lens_reader *r = z->r;
     const char *key = r->word[0];
     lens_surface *s = surface_of(z);
+    *known = true;
     if (strcmp(key, "TYPE") == 0)
         return read_type(z);
     if (strcmp(key, "CURV") == 0)
@@ -136,16 +155,15 @@ static status read_surface_line(zmx_reader *z)
     if (strcmp(key, "GLAS") == 0)
         return lens_read_glass(r, s);
     if (strcmp(key, "DIAM") == 0)
-        return read_diameter(z, 1, &s->diameter);
-    if (strcmp(key, "CLAP") == 0)
+        return read_rim(z);
+    if (strcmp(key, "CLAP") == 0 || strcmp(key, "FLAP") == 0)
         return read_aperture(z);
     if (strcmp(key, "COMM") == 0)
         read_comment(r, s->name, sizeof s->name);
     else if (strcmp(key, "STOP") == 0)
         r->p->stop = (int)r->p->count - 1;
-    else if (strcmp(key, "SQAP") == 0 || strcmp(key, "ELAP") == 0 || strcmp(key, "SPID") == 0 ||
-             strcmp(key, "OBSC") == 0 || strcmp(key, "OBDC") == 0 || strcmp(key, "UDAD") == 0)
-        lens_note(r->p, "%s of surface %zu was not read", key, r->p->count - 1);
+    else
+        *known = false;
     return STATUS_OK;
 }
 
@@ -166,12 +184,16 @@ static status read_unit(const lens_reader *r)
     return lens_wrong(r, 1, "use MM, CM, IN or METER", "unknown unit '%.20s'", r->count > 1 ? r->word[1] : "");
 }
 
-static status read_system_aperture(const lens_reader *r, lens_aperture_kind kind)
+static status read_system_aperture(zmx_reader *z, lens_aperture_kind kind)
 {
+    const lens_reader *r = z->r;
     double value;
     TRY(lens_number(r, 1, r->word[0], &value));
     if (!(value > 0.0))
         return lens_wrong(r, 1, "give a number above 0", "%s %g is out of range", r->word[0], value);
+    if (z->has_stop_size)
+        lens_note(r->p, "%s replaces the aperture that is given before", r->word[0]);
+    z->has_stop_size = true;
     r->p->aperture_kind = kind;
     r->p->aperture = value;
     return STATUS_OK;
@@ -198,6 +220,11 @@ static status read_field_type(zmx_reader *z)
         return lens_wrong(r, 1, "use 0, angles; 1, heights of the object; 2 or 3, heights of the image",
                           "the kind of fields %g is unknown", type);
     z->field_type = (int)type;
+    double telecentric = 0.0;
+    if (r->count > 2)
+        TRY(lens_number(r, 2, "whether the object space is telecentric", &telecentric));
+    if (telecentric != 0.0)
+        lens_note_item(r->p, "not read", "telecentric object space");
     if (r->count > 3)
         TRY(lens_number(r, 3, "the number of fields", &count));
     if (r->count > 4)
@@ -213,7 +240,7 @@ static status add_wavelength(const lens_reader *r, int number, double um, double
     if (number < 1 || number > LENS_LIST_MAX || !(um >= 0.2 && um <= 2.0))
         return lens_wrong(r, 1, "use at most 24 wavelengths from 0.2 to 2 um", "the wavelength %g um is out of range",
                           um);
-    p->wavelength[number - 1] = (lens_wavelength){1000.0 * um, weight};
+    p->wavelength[number - 1] = (lens_wavelength){lens_short_number(1000.0 * um), weight};
     if ((size_t)number > p->wavelength_count)
         p->wavelength_count = (size_t)number;
     return STATUS_OK;
@@ -228,8 +255,10 @@ static status read_wavelength(const zmx_reader *z)
     TRY(lens_number(r, 2, "a wavelength", &um));
     if (r->count > 3)
         TRY(lens_number(r, 3, "a weight", &weight));
-    if (number < 1.0 || number > LENS_LIST_MAX || (size_t)number != r->p->wavelength_count + 1)
+    if (!(number >= 1.0 && number <= LENS_LIST_MAX) || (size_t)number != r->p->wavelength_count + 1) {
+        lens_note_item(r->p, "not read", "wavelength %.6g (line %ld)", number, r->line);
         return STATUS_OK;
+    }
     return add_wavelength(r, (int)number, um, weight);
 }
 
@@ -251,11 +280,12 @@ static status read_mode(const lens_reader *r)
                : STATUS_OK;
 }
 
-static status read_system_line(zmx_reader *z)
+static status read_system_line(zmx_reader *z, bool *known)
 {
     lens_reader *r = z->r;
     const char *key = r->word[0];
     double primary;
+    *known = true;
     if (strcmp(key, "UNIT") == 0)
         return read_unit(r);
     if (strcmp(key, "MODE") == 0)
@@ -263,48 +293,75 @@ static status read_system_line(zmx_reader *z)
     if (strcmp(key, "NAME") == 0)
         read_comment(r, r->p->title, sizeof r->p->title);
     else if (strcmp(key, "ENPD") == 0)
-        return read_system_aperture(r, LENS_APERTURE_PUPIL);
+        return read_system_aperture(z, LENS_APERTURE_PUPIL);
     else if (strcmp(key, "FNUM") == 0)
-        return read_system_aperture(r, LENS_APERTURE_NUMBER);
+        return read_system_aperture(z, LENS_APERTURE_NUMBER);
     else if (strcmp(key, "OBNA") == 0)
-        return read_system_aperture(r, LENS_APERTURE_OBJECT);
+        return read_system_aperture(z, LENS_APERTURE_OBJECT);
     else if (strcmp(key, "FLOA") == 0)
-        r->p->aperture_kind = LENS_APERTURE_STOP;
+        r->p->aperture_kind = LENS_APERTURE_STOP, z->has_stop_size = true;
     else if (strcmp(key, "FTYP") == 0)
         return read_field_type(z);
     else if (strcmp(key, "XFLN") == 0 || strcmp(key, "XFLD") == 0)
         return read_field_list(z, z->x);
     else if (strcmp(key, "YFLN") == 0 || strcmp(key, "YFLD") == 0)
         return read_field_list(z, z->y);
+    else if (strcmp(key, "VDXN") == 0 || strcmp(key, "VDYN") == 0 || strcmp(key, "VCXN") == 0 ||
+             strcmp(key, "VCYN") == 0)
+        return lens_read_vignetting(r, (key[1] == 'C') * 2u + (key[2] == 'Y'));
     else if (strcmp(key, "WAVM") == 0)
         return read_wavelength(z);
     else if (strcmp(key, "WAVL") == 0)
         return read_wavelength_list(z);
     else if (strcmp(key, "PWAV") == 0) {
         TRY(lens_number(r, 1, "PWAV", &primary));
-        z->primary = (int)fmin(fmax(primary, 1.0), LENS_LIST_MAX);
-    }
+        if (!(primary >= 1.0 && primary <= LENS_LIST_MAX))
+            return lens_wrong(r, 1, "give the number of a wavelength", "PWAV %g is out of range", primary);
+        z->primary = (int)primary, z->primary_line = r->line;
+    } else
+        *known = false;
     return STATUS_OK;
 }
 
 /* --- the file --- */
 
+/* A surface's lines are indented; some programs drop the blanks. */
+static status read_words(zmx_reader *z, bool indented, const char *whole)
+{
+    lens_reader *r = z->r;
+    const long of = z->in_surface ? surface_of(z)->line : 0;
+    bool known = false;
+    if (z->in_surface && (indented || strcmp(r->word[0], "TOL") != 0))
+        TRY(read_surface_line(z, &known));
+    if (!known && !(z->in_surface && indented))
+        TRY(read_system_line(z, &known));
+    if (!known)
+        return lens_zmx_other(r, of, whole);
+    /* what follows their value is kept, and an aperture that is not written as a hole */
+    static const char *const kept[] = {"CURV", "DIAM", "CLAP", "FLAP"};
+    bool keep = false;
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+        keep |= strcmp(r->word[0], kept[i]) == 0 && (i < 2 || surface_of(z)->hole == 0.0);
+    return keep ? lens_zmx_keep(r, of, whole) : STATUS_OK;
+}
+
 static status read_line(zmx_reader *z, char *line)
 {
     lens_reader *r = z->r;
     const bool indented = *line == ' ' || *line == '\t';
+    char *whole = text_format("%s", line);
+    if (!whole)
+        return out_of_memory(r->why);
     lens_divide(r, line, false);
-    if (r->count == 0)
-        return STATUS_OK;
-    if (strcmp(r->word[0], "SURF") == 0) {
-        status code = STATUS_OK;
+    status code = STATUS_OK;
+    if (r->count > 0 && strcmp(r->word[0], "SURF") == 0) {
         z->in_surface = lens_append(r, &code) != NULL;
-        return code;
+        z->has_distance = z->has_aperture = false;
+    } else if (r->count > 0) {
+        code = read_words(z, indented, whole);
     }
-    /* a surface's lines are indented; some programs drop the blanks */
-    if (z->in_surface && (indented || strcmp(r->word[0], "TOL") != 0))
-        TRY(read_surface_line(z));
-    return z->in_surface && indented ? STATUS_OK : read_system_line(z);
+    free(whole);
+    return code;
 }
 
 /* Heights of the image become angles by the focal length. */
@@ -365,8 +422,11 @@ status lens_read_zmx(lens_reader *r, char *text)
         r->line++;
         TRY(read_line(&z, line));
     }
+    TRY(lens_zmx_check_image(r, z.has_distance));
     TRY(end_surfaces(&z));
     lens_prescription *p = r->p;
+    if (!z.has_stop_size)
+        lens_note(p, "no ENPD, FNUM, OBNA or FLOA: the beam fills the stop as its diameter states");
     if (p->wavelength_count == 0)
         p->wavelength_count = 1;
     /* unused entries of the list: 0.55 um after the used ones */
@@ -375,8 +435,12 @@ status lens_read_zmx(lens_reader *r, char *text)
     while (!z.waves && p->wavelength_count > 1 && p->wavelength[p->wavelength_count - 1].nm == 550.0 &&
            p->wavelength[p->wavelength_count - 2].nm == 550.0)
         p->wavelength_count--;
-    if ((size_t)z.primary <= p->wavelength_count)
-        p->primary = (size_t)z.primary - 1;
+    if ((size_t)z.primary > p->wavelength_count) {
+        r->line = z.primary_line;
+        return lens_wrong(r, -1, "give the number of one of them", "PWAV is %d, but the file has %zu wavelengths",
+                          z.primary, p->wavelength_count);
+    }
+    p->primary = (size_t)z.primary - 1;
     set_fields(&z);
     return STATUS_OK;
 }
