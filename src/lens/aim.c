@@ -205,6 +205,14 @@ static double room_before(const lens_model *m, const lens_first *first)
     return fmin(most, 1e4 * first->entrance_d);
 }
 
+/* Factors are of the entrance pupil, of which the stop may be an inverted image. */
+static void set_vignetting(lens_beam *out, const lens_vignetting *v, double per_height)
+{
+    const double way = copysign(out->stop_radius, per_height);
+    out->part_x = way * v->shift_x, out->part_y = way * v->shift_y;
+    out->half_x = 1.0 - v->squeeze_x, out->half_y = 1.0 - v->squeeze_y;
+}
+
 status lens_beam_aim(lens_bench *b, const lens_prescription *p, const lens_first *first, double x, double y,
                      lens_beam *out, diagnostic *why)
 {
@@ -214,6 +222,8 @@ status lens_beam_aim(lens_bench *b, const lens_prescription *p, const lens_first
     const double size = hypot(x, y);
     *out = (lens_beam){.b = b, .stop_radius = first->stop_real * (1.0 - WITHIN), .back = room_before(m, first)};
     out->t[0] = size > 0.0 ? x / size : 0.0, out->t[1] = size > 0.0 ? y / size : 1.0;
+    const lens_vignetting v = lens_vignetting_of(p, x, y);
+    set_vignetting(out, &v, first->per_height);
     const double per = first->per_height * (far ? 1.0 : 1.0 + zE / m->object_distance);
     out->per[0] = out->per[3] = per;
     /* Wide fields are approached in steps: pupils of wide-angle lenses move with the angle. */
@@ -263,6 +273,9 @@ status lens_beam_ray(lens_beam *bundle, double px, double py, double launch[2], 
     TRY(aim(bundle, false, target, AIMED * bundle->stop_radius, own, per, out, why));
     if (launch)
         launch[0] = out->loss == LENS_LOST_EARLY ? NAN : own[0], launch[1] = own[1];
+    if (out->loss == LENS_PASSES &&
+        hypot(lens_beam_x(bundle, target[0]), lens_beam_y(bundle, target[1])) > bundle->stop_radius * (1.0 + WITHIN))
+        out->loss = LENS_LOST, out->lost_at = bundle->b->m->stop; /* by vignetting factors */
     return STATUS_OK;
 }
 

@@ -95,7 +95,20 @@ typedef struct lens_beam {
     double base[2], base_cosines[2]; /* of the ray at which they were taken: its launch, its cosines */
     lens_ray chief;
     bool blocked; /* the chief ray does not arrive; `chief` is then the mean of rays that do */
+    /* The part of the stop that vignetting factors leave: the ellipse about (part_x, part_y), mm, with half axes in
+     * units of the stop's radius. */
+    double part_x, part_y, half_x, half_y;
 } lens_beam;
+
+/* A point of the stop in the frame in which the part that vignetting factors leave is a circle of the stop's radius. */
+static inline double lens_beam_x(const lens_beam *b, double stop_x)
+{
+    return (stop_x - b->part_x) / b->half_x;
+}
+static inline double lens_beam_y(const lens_beam *b, double stop_y)
+{
+    return (stop_y - b->part_y) / b->half_y;
+}
 
 /* x and y: a field, in the prescription's own unit. */
 status lens_beam_aim(lens_bench *b, const lens_prescription *p, const lens_first *first, double x, double y,
@@ -165,6 +178,7 @@ typedef struct lens_samples {
     int n, count; /* count: of those that arrive */
     double step;  /* of the cosines */
     double stop_radius;
+    double part_x, part_y, half_x, half_y; /* as in lens_beam, all in units of the stop's radius */
     double *value[LENS_SAMPLE_KINDS];
     bool *passes;
 } lens_samples;

@@ -91,6 +91,8 @@ status lens_samples_trace(const lens_study *s, lens_beam *bundle, lens_samples *
     const double *by = bundle->cosines_per;
     const int n = out->n;
     out->count = 0, out->stop_radius = bundle->stop_radius;
+    out->part_x = bundle->part_x / bundle->stop_radius, out->part_y = bundle->part_y / bundle->stop_radius;
+    out->half_x = bundle->half_x, out->half_y = bundle->half_y;
     TRY(extent(bundle, out, centre, any, why));
     *any = *any && by[0] * by[3] != by[1] * by[2]; /* else no bundle, or an obstruction about the chief ray */
     if (!*any)
@@ -184,7 +186,8 @@ static bool arrives(const thinned *t, double row, double column)
     return sum > 0.5;
 }
 
-/* A fine grid, before the edge: rho in units of the stop's radius, NaN where no light arrives. */
+/* A fine grid, before the edge: rho in units of the stop's radius, or of the ellipse that vignetting factors leave of
+ * it where that is farther in; NaN where no light arrives. */
 typedef struct fine_grid {
     int m;
     double *rho, *waves;
@@ -230,7 +233,8 @@ status lens_pupil_make(const lens_samples *s, int skip, int finer, lens_pupil *o
         const double x = between(&t, s->value[LENS_STOP_X], row, column),
                      y = between(&t, s->value[LENS_STOP_Y], row, column);
         g.waves[i] = between(&t, s->value[LENS_WAVES], row, column);
-        g.rho[i] = isnan(g.waves[i]) || !arrives(&t, row, column) ? NAN : hypot(x, y);
+        const double rho = fmax(hypot(x, y), hypot((x - s->part_x) / s->half_x, (y - s->part_y) / s->half_y));
+        g.rho[i] = isnan(g.waves[i]) || !arrives(&t, row, column) ? NAN : rho;
     }
     for (int i = 0; i < m * m; i++) {
         out->cover[i] = cover_of(&g, i, &out->waves[i]);

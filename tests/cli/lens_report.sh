@@ -70,6 +70,33 @@ if command -v gnuplot >/dev/null; then
     verdict $? "where an obstruction takes the chief rays, too" "$(<said)"
 fi
 
+# --- vignetting factors: the ellipse that they leave of the pupil, and its MTF, of a lens without aberrations
+cat >slow.csv <<'END'
+pupil, 10
+field_deg, 0
+vdx, 0.1
+vdy, -0.25
+vcx, 0.2
+vcy, 0.5
+radius, thickness, medium, diameter, stop
+1000, 3, 1.5, 40, 1
+-1000, 0, , 40,
+END
+report slow.csv --spot 16 --wave 64 --fan 4 --csv >slow.rows
+equal "rays within the ellipse pass" "$(awk -F, '$1 == "vignetting" && $6 == "passes" { printf "%.12f", $7 }' slow.rows)" \
+    "$(awk 'BEGIN { for (i = 0.5; i < 16; i++) for (j = 0.5; j < 16; j++) {
+        x = i / 8 - 1; y = j / 8 - 1
+        all += x * x + y * y <= 1; in_it += ((x - 0.1) / 0.8) ^ 2 + ((y + 0.25) / 0.5) ^ 2 <= 1 && x * x + y * y <= 1 }
+        printf "%.12f", in_it / all }')"
+awk -F, '$1 == "mtf-diffraction" { m[$6, $5] = $7; if ($6 == "limit") f[$5] }
+    function limit(v) { return v < 1 ? (atan2(sqrt(1 - v * v), v) - v * sqrt(1 - v * v)) * 2 / 3.14159265358979 : 0 }
+    END { fc = 1e6 / 587.5618 * 10 / 1000.5
+        for (i in f) {
+            t = m["tangential", i] - limit(i / fc / 0.5); s = m["sagittal", i] - limit(i / fc / 0.8); n++
+            if (t * t > 4e-4 || s * s > 4e-4) { print i, t, s; bad++ } }
+        exit bad > 0 || n < 20 }' slow.rows >said
+verdict $? "the MTF is that of the ellipse" "$(head -n 5 said)"
+
 # --- what it refuses
 refuses() { # WHAT WORDS ARGUMENT...
     local what=$1 words=$2 code
