@@ -402,8 +402,21 @@ static void hint_at_files(const scene *s, const note_sink *taker)
     }
 }
 
+/* What readers of lens files have told. */
+static void report_remarks(const scene *s, const note_sink *taker)
+{
+    for (const char *at = s->remarks; at && *at; at = strchr(at, '\n') + 1) {
+        const int name = (int)strcspn(at, ":"), length = (int)strcspn(at + name + 2, "\n");
+        char system[SCENE_NAME_MAX + 1];
+        snprintf(system, sizeof system, "%.*s", name, at);
+        note_report(taker, system, NULL, length > 240 ? "`cuvette lens FILE` tells all" : "", "%.*s", length,
+                    at + name + 2);
+    }
+}
+
 void scene_hints(const scene *s, const note_sink *taker)
 {
+    report_remarks(s, taker);
     size_t visible = 0, lit = 0, shining = 0;
     for (size_t i = 0; i < s->solid_count; i++) {
         visible += s->solids[i].visible != 0;

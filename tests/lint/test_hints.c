@@ -49,6 +49,10 @@ static void missing_objects_and_lights_give_a_hint(void **state)
                  "ball.diffuse: ball is black: it is neither transparent, nor diffuse, nor ambient, nor "
                  "emitting; set its diffuse\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, emission: 0.5}}", "");
+    expect_hints(LIT
+                 "lens_systems: {eye: {pupil: 10, surfaces: [{radius: 60, thickness: 6, medium: bk7, stop: on, hole: "
+                 "1}, {radius: -45, thickness: 0}]}}",
+                 "eye: not read: the inner radius of the aperture of surface 1, which is no mirror\n");
     expect_hints("render: {integrator: path}\nsolids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, "
                  "emission: 1, radius: 2}}",
                  "");

@@ -298,6 +298,23 @@ static void materials_of_the_scene_are_glasses(void **state)
     }
 }
 
+/* What a reader tells about a lens of a scene is a remark of the scene, and of its copies. */
+static void scenes_keep_what_readers_tell(void **state)
+{
+    (void)state;
+    scene *s =
+        scene_from("lens_systems:\n  a:\n    pupil: 10\n    surfaces:\n      - {radius: 60, thickness: 6, medium: bk7, "
+                   "stop: on, hole: 1}\n      - {radius: -45, thickness: 9}\n");
+    scene *copy = scene_clone(s);
+    static const char told[] = "a: not read: the inner radius of the aperture of surface 1, which is no mirror\n"
+                               "a: the image is 9 after the last surface, but the paraxial focus is at ";
+    assert_non_null(copy);
+    assert_int_equal(strncmp(s->remarks, told, strlen(told)), 0);
+    assert_string_equal(s->remarks, copy->remarks);
+    scene_destroy(copy);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -311,6 +328,7 @@ int main(void)
         cmocka_unit_test(numbers_are_the_shortest),
         cmocka_unit_test(a_scene_with_lenses_is_in_air),
         cmocka_unit_test(materials_of_the_scene_are_glasses),
+        cmocka_unit_test(scenes_keep_what_readers_tell),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

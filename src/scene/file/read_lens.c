@@ -246,6 +246,23 @@ static status check_keys(const system_reader *r)
     return STATUS_OK;
 }
 
+/* Adds each part of the note to the scene's remarks. */
+static status add_remarks(const system_reader *r, char *note)
+{
+    for (char *part = note; part && *part;) {
+        char *end = strstr(part, "; ");
+        if (end)
+            *end = 0;
+        char *all = text_format("%s%s: %s\n", r->s->remarks ? r->s->remarks : "", r->name, part);
+        if (!all)
+            return out_of_memory(r->why);
+        free(r->s->remarks);
+        r->s->remarks = all;
+        part = end ? end + 2 : NULL;
+    }
+    return STATUS_OK;
+}
+
 static status read_system(system_reader *r, const node *key)
 {
     lens_placement at = {.name = r->name, .mount = false, .screen = true};
@@ -261,6 +278,7 @@ static status read_system(system_reader *r, const node *key)
     status code = lens_add_to_scene(r->s, &p, &at, r->why);
     if (code != STATUS_OK)
         diagnostic_locate(r->why, document_name(r->file), key->line, key->column);
+    THEN(code, add_remarks(r, p.note));
     lens_prescription_release(&p);
     return code;
 }

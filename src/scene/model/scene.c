@@ -39,6 +39,7 @@ void scene_destroy(scene *s)
     image_destroy(s->background.img);
     free(s->path);
     free(s->title);
+    free(s->remarks);
     free(s->limits.root);
     free(s);
 }
@@ -65,10 +66,11 @@ scene *scene_clone(const scene *original)
     s->has_followers = original->has_followers;
     s->path = strdup(original->path);
     s->title = strdup(original->title);
+    s->remarks = original->remarks ? strdup(original->remarks) : NULL;
     bool complete = clone_texture(&s->background, &original->background);
     complete = objects_clone(s, original) && complete;
     complete = scene_limit(s, original->limits.root, original->limits.triangles, NULL) == STATUS_OK && complete;
-    if (!complete || !s->path || !s->title) {
+    if (!complete || !s->path || !s->title || (original->remarks && !s->remarks)) {
         scene_destroy(s);
         return NULL;
     }

@@ -15,6 +15,7 @@
 struct scene {
     char *path; /* the file that was read; "" if none */
     char *title;
+    char *remarks; /* on files of lens systems, for notes: lines "NAME: REMARK"; NULL for none */
     render_settings render;
     struct camera camera;
     struct background background;
