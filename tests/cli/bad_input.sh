@@ -116,7 +116,7 @@ refused "lens without a file" "give a lens file" lens
 refused "lens of two files" "unexpected argument" lens good.dat good.dat
 refused "lens of a missing file" "nowhere.zmx: cannot open" lens nowhere.zmx
 refused "lens with a bad number" "bad.dat:2:9: the diameter: 'x' is not a number" lens bad.dat
-refused "lens of an unknown glass" "bad.csv:2:6: the glass 'unobtainium'.*glasses FILE.agf" lens bad.csv
+refused "lens of an unknown glass" "bad.csv:2:6: the glass 'unobtainium'.*-g FILE.agf" lens bad.csv
 refused "lens with a catalogue that lacks the glass" "the glass 'unobtainium'" lens bad.csv --glasses empty.agf
 refused "lens with a missing catalogue" "none.agf: cannot open" lens bad.csv --glasses none.agf
 refused "lens to an unknown format" "ends in .yaml, .zmx, .dat or .csv" lens good.dat -o lens.txt

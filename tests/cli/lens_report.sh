@@ -83,7 +83,8 @@ radius, thickness, medium, diameter, stop
 -1000, 0, , 40,
 END
 report slow.csv --spot 16 --wave 64 --fan 4 --csv >slow.rows
-equal "rays within the ellipse pass" "$(awk -F, '$1 == "vignetting" && $6 == "passes" { printf "%.12f", $7 }' slow.rows)" \
+equal "rays within the ellipse pass" \
+    "$(awk -F, '$1 == "vignetting" && $6 == "passes" { printf "%.12f", $7 }' slow.rows)" \
     "$(awk 'BEGIN { for (i = 0.5; i < 16; i++) for (j = 0.5; j < 16; j++) {
         x = i / 8 - 1; y = j / 8 - 1
         all += x * x + y * y <= 1; in_it += ((x - 0.1) / 0.8) ^ 2 + ((y + 0.25) / 0.5) ^ 2 <= 1 && x * x + y * y <= 1 }

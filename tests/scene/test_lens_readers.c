@@ -110,7 +110,7 @@ static void vignetting_factors_are_those_of_their_field(void **state)
     refused("a.zmx", SINGLET("VCYN 0 1\n", "", ""), 3, 8, "vignetting factor 1", "below 1");
 }
 
-/* --- .zmx: what is told --- */
+/* --- .zmx: notes and errors --- */
 
 static void words_that_act_on_light_are_noted(void **state)
 {
@@ -124,6 +124,7 @@ static void words_that_act_on_light_are_noted(void **state)
     noted(
         "a.zmx", HEAD "YFLN 0\nWAVM 1 0.5\nWAVM 3 0.6\n" OBJECT FRONT BACK IMAGE,
         "not read: wavelength 3 (line 5); no ENPD, FNUM, OBNA or FLOA: the beam fills the stop as its diameter states");
+    noted("a.zmx", SINGLET("GCAT HOYA\n", "", ""), "taken as Schott's, which GCAT does not name: bk7");
     noted("a.zmx", HEAD SYSTEM "FNUM 4 0\n" OBJECT FRONT BACK IMAGE, "FNUM replaces the aperture that is given before");
     noted("a.zmx", HEAD SYSTEM OBJECT FRONT "SURF 2\n  CURV -0.02\n  DISZ 90\n" IMAGE,
           "the image is 90 after the last surface, but the paraxial focus is at 47.5362");

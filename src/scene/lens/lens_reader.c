@@ -30,67 +30,6 @@ status lens_wrong(const lens_reader *r, int word, const char *remedy, const char
     return code;
 }
 
-/* Inserts a text into the note at a place; what does not fit is told by dots, once. */
-static void note_insert(lens_prescription *p, size_t at, const char *text)
-{
-    static const char more[] = "; ...";
-    const size_t used = strlen(p->note), length = strlen(text);
-    if (used + length + sizeof more < sizeof p->note) {
-        memmove(p->note + at + length, p->note + at, used - at + 1);
-        memcpy(p->note + at, text, length);
-    } else if (used >= sizeof more && strcmp(p->note + used - sizeof more + 1, more) != 0) {
-        memcpy(p->note + used, more, sizeof more);
-    }
-}
-
-/* The part of the note that begins so, NULL for none; ends: its end. */
-static const char *note_part(const lens_prescription *p, const char *head, const char **ends)
-{
-    const size_t length = strlen(head);
-    for (const char *at = p->note; *at; at = **ends ? *ends + 2 : *ends) {
-        *ends = strstr(at, "; ") ? strstr(at, "; ") : at + strlen(at);
-        if (strncmp(at, head, length) == 0 && (at + length == *ends || at[length] == ':'))
-            return at;
-    }
-    return NULL;
-}
-
-void lens_note(lens_prescription *p, const char *format, ...)
-{
-    char text[400];
-    const char *ends;
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    if (note_part(p, text, &ends))
-        return;
-    if (p->note[0])
-        note_insert(p, strlen(p->note), "; ");
-    note_insert(p, strlen(p->note), text);
-}
-
-void lens_note_item(lens_prescription *p, const char *head, const char *format, ...)
-{
-    char item[120], text[124];
-    const char *ends;
-    va_list list;
-    va_start(list, format);
-    vsnprintf(item, sizeof item, format, list);
-    va_end(list);
-    const char *part = note_part(p, head, &ends);
-    if (!part) {
-        lens_note(p, "%s: %s", head, item);
-        return;
-    }
-    const size_t length = strlen(item);
-    for (const char *at = part + strlen(head); at < ends; at++)
-        if ((at[-1] == ' ') && strncmp(at, item, length) == 0 && (at + length == ends || at[length] == ','))
-            return;
-    snprintf(text, sizeof text, ", %s", item);
-    note_insert(p, (size_t)(ends - p->note), text);
-}
-
 double lens_short_number(double x)
 {
     char text[NUMBER_TEXT_MAX];

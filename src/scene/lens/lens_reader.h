@@ -87,6 +87,8 @@ void lens_zmx_put_kept(const lens_prescription *p, long of, FILE *out);
 /* What follows the value in the kept line with that word (of the system: the word itself), or `usual`, and the end of
  * the line. */
 void lens_zmx_put_tail(const lens_prescription *p, long of, const char *word, const char *usual, FILE *out);
+/* Notes glasses of the catalogue of media whose maker is not among the catalogues that the file names. */
+void lens_zmx_check_makers(lens_reader *r);
 /* Checks that the last surface can be the image. has_distance: it has a line DISZ. */
 status lens_zmx_check_image(lens_reader *r, bool has_distance);
 

@@ -424,6 +424,7 @@ status lens_read_zmx(lens_reader *r, char *text)
     }
     TRY(lens_zmx_check_image(r, z.has_distance));
     TRY(end_surfaces(&z));
+    lens_zmx_check_makers(r);
     lens_prescription *p = r->p;
     if (!z.has_stop_size)
         lens_note(p, "no ENPD, FNUM, OBNA or FLOA: the beam fills the stop as its diameter states");

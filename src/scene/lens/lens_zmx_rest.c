@@ -2,6 +2,7 @@
  * act on light, words that are mistakes, and an image that is missing. */
 #include "base/array.h"
 #include "base/text.h"
+#include "optics/media.h"
 #include "scene/lens/lens_reader.h"
 
 #include <math.h>
@@ -160,4 +161,20 @@ status lens_zmx_check_image(lens_reader *r, bool has_distance)
     if (s->mirror || s->medium.kind != LENS_AIR)
         lens_note_item(r->p, "not read", "GLAS of the image");
     return STATUS_OK;
+}
+
+/* --- catalogues --- */
+
+void lens_zmx_check_makers(lens_reader *r)
+{
+    const char *ends, *line = next_kept(r->p->kept, 0, &ends);
+    while (line && !begins_with(line, "GCAT"))
+        line = next_kept(ends + 1, 0, &ends);
+    const char *schott = line ? strstr(line, "SCHOTT") : NULL;
+    for (size_t i = 0; line && !(schott && schott < ends) && i < r->p->count; i++) {
+        const lens_medium *m = &r->p->surface[i].medium;
+        const medium *of = m->kind == LENS_CATALOGUE ? media_find(m->name) : NULL;
+        if (of && strncmp(of->title, "Schott", 6) == 0)
+            lens_note_item(r->p, "taken as Schott's, which GCAT does not name", "%s", m->name);
+    }
 }
