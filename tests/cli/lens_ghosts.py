@@ -18,7 +18,8 @@ def power(before, stack, after, nm):
     b, c = 1.0, after
     for n, thickness in reversed(stack):
         phase = 2.0 * math.pi * n * thickness / nm
-        b, c = (cmath.cos(phase) * b + 1j * cmath.sin(phase) * c / n, 1j * n * cmath.sin(phase) * b + cmath.cos(phase) * c)
+        cosine, sine = cmath.cos(phase), 1j * cmath.sin(phase)
+        b, c = cosine * b + sine * c / n, n * sine * b + cosine * c
     r = (before * b - c) / (before * b + c)
     return abs(r) ** 2, 4.0 * before * after / abs(before * b + c) ** 2
 
@@ -43,20 +44,26 @@ for case in range(6):
     for n in (1.5, 1.7):
         k_most = 0.5 if case % 2 else 0.0
         stack = [
-            (complex(round(number.uniform(1.3, 2.3), 3), -round(number.uniform(0.0, k_most), 3)), number.randint(10, 120))
+            (
+                complex(round(number.uniform(1.3, 2.3), 3), -round(number.uniform(0.0, k_most), 3)),
+                number.randint(10, 120),
+            )
             for _ in range(number.randint(1, 3))
         ]
         lenses.append((n, stack))
     with open(f"{folder}/ghosts.yaml", "w", encoding="ascii") as scene:
         scene.write(f"render: {{unit_m: 0.001, lambda_nm: {nm}}}\nmaterials:\n")
         for name, (n, stack) in zip(("glass-1-5", "glass-1-7"), lenses):
-            layers = ", ".join(f"{layer.real}+{-layer.imag}i {d}" if layer.imag else f"{layer.real} {d}" for layer, d in stack)
+            layers = ", ".join(
+                f"{layer.real}+{-layer.imag}i {d}" if layer.imag else f"{layer.real} {d}" for layer, d in stack
+            )
             scene.write(f'  {name}: {{transparency: 1, ior: {n}, coating: "{layers}"}}\n')
         scene.write(
             "lens_systems:\n  objective:\n    pupil: 5\n    surfaces:\n"
             "      - {radius: 60, thickness: 4, medium: 1.5, diameter: 20, stop: on}\n"
             "      - {radius: -200, thickness: 3, diameter: 20}\n"
-            "      - {radius: 80, thickness: 3, medium: 1.7, diameter: 20}\n      - {radius: 0, thickness: 0, diameter: 20}\n"
+            "      - {radius: 80, thickness: 3, medium: 1.7, diameter: 20}\n"
+            "      - {radius: 0, thickness: 0, diameter: 20}\n"
         )
     words = ("--json", "--spot", "4", "--wave", "8", "--fan", "2", f"{folder}/ghosts.yaml")
     done = subprocess.run([program, "lens", "report", *words], check=True, capture_output=True)

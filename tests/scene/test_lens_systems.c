@@ -1,5 +1,5 @@
-/* Lens systems in scenes: they move, turn and scale as one; mirrors that fold the axis or are behind glass, against closed
- * forms; and mistakes. */
+/* Lens systems in scenes: they move, turn and scale as one; mirrors that fold the axis or are behind glass, against
+ * closed forms; and mistakes. */
 #include "lens_fixture.h"
 
 /* --- mirrors that fold the axis, or are behind glass --- */

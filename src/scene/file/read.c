@@ -345,7 +345,8 @@ static status read_lenses(const scene_reader *r, const char *name, param_group g
 
 static status read_sections(const scene_reader *r)
 {
-    /* In this order, not the file's: solids refer to materials, and are checked with render.weights; beams to solids. */
+    /* In this order, not the file's: solids refer to materials, and are checked with render.weights; beams refer to
+     * solids. */
     static const struct section {
         const char *name;
         status (*read)(const scene_reader *, const char *, param_group, const node *);

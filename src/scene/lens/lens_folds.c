@@ -4,38 +4,21 @@
  * Frames are of columns X, Y, Z with Z along the axis. A fold mirror with the unit normal n turns the axis by
  * Q = S_n S_z, the reflections at its plane and at the plane across Z: the rotation by twice the angle between n and Z,
  * after which the light travels along -Z, as after a mirror that is not tilted. */
+#include "base/number.h"
 #include "geometry/shapes/shape.h"
 #include "scene/lens/lens_reader.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* Sine of an angle, and distance relative to the way, up to which a surface counts as on the axis: rounding of files. */
+/* Sine of an angle, and distance relative to the way, up to which a surface is on the axis: rounding of files. */
 #define ON_AXIS 1e-9
 
 static const vec3 along_z = {0.0, 0.0, 1.0};
-
-bool lens_folds(const lens_surface *s)
-{
-    return s->tilt_x_deg != 0.0 || s->tilt_y_deg != 0.0;
-}
-
-mat3 lens_tilt(const lens_surface *s)
-{
-    return mat3_product(rotation_from_deg(vec3_make(s->tilt_x_deg, 0.0, 0.0)),
-                        rotation_from_deg(vec3_make(0.0, s->tilt_y_deg, 0.0)));
-}
-
-mat3 lens_fold(const lens_surface *s)
-{
-    const vec3 n = mat3_apply(lens_tilt(s), along_z);
-    const double k[3] = {n.x, n.y, n.z};
-    mat3 q;
-    for (int i = 0; i < 3; i++) /* (1 - 2 n n') diag(1, 1, -1) */
-        q.row[i] = vec3_make((i == 0) - 2.0 * k[i] * n.x, (i == 1) - 2.0 * k[i] * n.y, 2.0 * k[i] * n.z - (i == 2));
-    return q;
-}
 
 lens_pose lens_way_pose(const lens_way *w, vec3 vertex, vec3 normal, double *distance)
 {
@@ -71,21 +54,6 @@ static void take_break(lens_way *w, const lens_break *b)
     }
     if (b->number[5] != 0.0)
         w->at = vec3_add(w->at, mat3_apply(w->frame, aside));
-}
-
-bool lens_is_flat(const lens_surface *s)
-{
-    bool flat = s->radius == 0.0;
-    for (int i = 0; i < LENS_EVEN_TERMS; i++)
-        flat &= s->even[i] == 0.0;
-    return flat;
-}
-
-void lens_turn_round(lens_surface *s)
-{
-    s->radius = -s->radius;
-    for (int i = 0; i < LENS_EVEN_TERMS; i++)
-        s->even[i] = -s->even[i];
 }
 
 typedef struct unfolder {
@@ -151,6 +119,52 @@ status lens_take_breaks(lens_reader *r, const lens_break *breaks)
 }
 
 /* --- the solids of a scene, in the order of the light --- */
+
+double lens_size_of(const solid *of)
+{
+    return of->shape.scale.x;
+}
+
+static double get(const lens_finder *f, const solid *of, const char *row, int side)
+{
+    char path[2 * SCENE_NAME_MAX], *text = NULL, word[32];
+    double value = 0.0;
+    snprintf(word, sizeof word, row, side);
+    snprintf(path, sizeof path, "%s.%s", of->name, word);
+    if (param_find(PARAM_SOLID, word) && scene_get(f->s, path, &text, NULL) == STATUS_OK)
+        number_parse_real(text, &value);
+    free(text);
+    return value;
+}
+
+status lens_refuse(const lens_finder *f, const solid *of, const char *remedy, const char *what)
+{
+    return diagnose(f->why, STATUS_BAD_INPUT, remedy, "%.60s %s", of->name, what);
+}
+
+double lens_along(const lens_finder *f, const solid *of)
+{
+    return vec3_dot(f->axis, vec3_sub(of->shape.position, f->origin));
+}
+
+lens_surface lens_side_of(const lens_finder *f, const placed_lens *l, int side)
+{
+    const solid *of = l->of;
+    const double k = lens_size_of(of);
+    double power = k * k * k;
+    lens_surface s = {.radius = k * get(f, of, "radius_%d", side),
+                      .conic = get(f, of, "conic_%d", side),
+                      .diameter = k * get(f, of, "diameter_%d", side),
+                      .medium = {.kind = LENS_AIR, .glass_file = -1}};
+    for (int i = 0; i < LENS_EVEN_TERMS; i++, power *= k * k) {
+        char row[16];
+        snprintf(row, sizeof row, "a%d_%%d", 4 + 2 * i);
+        s.even[i] = get(f, of, row, side) / power;
+    }
+    if (s.diameter == 0.0)
+        s.diameter = k * of->shape.diameter;
+    return s;
+}
 
 /* Appends a surface at y; the thickness of the one before it follows. */
 static lens_surface *append(lens_finder *f, double y, lens_surface s)

@@ -1,6 +1,7 @@
 /* Media, surfaces and paraxial properties of a lens prescription (lens_prescription.h). */
 #include "scene/lens/lens_prescription.h"
 #include "geometry/primitives/asphere.h"
+#include "geometry/solid.h"
 #include "scene/lens/lens_reader.h"
 
 #include <math.h>
@@ -126,6 +127,44 @@ double lens_surface_sag(const lens_surface *s, double rho)
 {
     const even_asphere e = asphere_of(s->radius == 0.0 ? 0.0 : 1.0 / s->radius, s->conic, s->even);
     return asphere_reaches(&e, rho * rho) ? asphere_sag(&e, rho * rho) : NAN;
+}
+
+/* --- mirrors that fold the axis --- */
+
+bool lens_folds(const lens_surface *s)
+{
+    return s->tilt_x_deg != 0.0 || s->tilt_y_deg != 0.0;
+}
+
+mat3 lens_tilt(const lens_surface *s)
+{
+    return mat3_product(rotation_from_deg(vec3_make(s->tilt_x_deg, 0.0, 0.0)),
+                        rotation_from_deg(vec3_make(0.0, s->tilt_y_deg, 0.0)));
+}
+
+mat3 lens_fold(const lens_surface *s)
+{
+    const vec3 n = mat3_apply(lens_tilt(s), vec3_make(0.0, 0.0, 1.0));
+    const double k[3] = {n.x, n.y, n.z};
+    mat3 q;
+    for (int i = 0; i < 3; i++) /* (1 - 2 n n') diag(1, 1, -1) */
+        q.row[i] = vec3_make((i == 0) - 2.0 * k[i] * n.x, (i == 1) - 2.0 * k[i] * n.y, 2.0 * k[i] * n.z - (i == 2));
+    return q;
+}
+
+bool lens_is_flat(const lens_surface *s)
+{
+    bool flat = s->radius == 0.0;
+    for (int i = 0; i < LENS_EVEN_TERMS; i++)
+        flat &= s->even[i] == 0.0;
+    return flat;
+}
+
+void lens_turn_round(lens_surface *s)
+{
+    s->radius = -s->radius;
+    for (int i = 0; i < LENS_EVEN_TERMS; i++)
+        s->even[i] = -s->even[i];
 }
 
 double lens_index_after(const lens_surface *s, double before, double lambda_nm)

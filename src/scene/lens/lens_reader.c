@@ -325,3 +325,19 @@ status lens_read_glass(const lens_reader *r, lens_surface *s)
     lens_note_item(r->p, "by n_d and V_d, which do not tell the index of other colours exactly", "%.20s", r->word[1]);
     return STATUS_OK;
 }
+
+/* --- systems of scenes --- */
+
+double lens_tidy(double x)
+{
+    char text[NUMBER_TEXT_MAX];
+    double rounded = x;
+    number_parse_real(number_format_digits(x, 12, text), &rounded);
+    return rounded;
+}
+
+bool lens_belongs(const char *system, const char *name)
+{
+    const size_t length = strlen(system);
+    return length == 0 || (strncmp(name, system, length) == 0 && (name[length] == '-' || !name[length]));
+}

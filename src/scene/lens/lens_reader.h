@@ -109,7 +109,8 @@ void lens_put_number(lens_target *t, const char *name, const char *row, double v
 /* Whether an object of the group has the name. */
 bool lens_has(const scene *s, param_group group, const char *name);
 
-/* --- what a scene tells of a system: lens_setup.c --- */
+/* --- a system in a scene: lens_scene.c; names and numbers: lens_reader.c; its beams: lens_setup.c; its surfaces in the
+ * order of the light: lens_folds.c --- */
 
 /* Whether an object's name is that of a system or begins with it and a hyphen; system "": any. */
 bool lens_belongs(const char *system, const char *name);
@@ -117,8 +118,6 @@ bool lens_belongs(const char *system, const char *name);
 double lens_tidy(double x);
 /* The fields, wavelengths, distance of the object and aperture of the system's beams; at: its first surface. */
 void lens_read_beams(const scene *s, const char *system, const lens_placement *at, lens_prescription *p);
-
-/* --- a system in a scene: lens_scene.c; its surfaces in the order of the light: lens_folds.c --- */
 
 /* A lens of the scene, with its place on the axis. */
 typedef struct placed_lens {

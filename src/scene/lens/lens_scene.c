@@ -10,11 +10,6 @@
 
 #define OFF_AXIS 1e-9 /* of the diameter: rounding of positions */
 
-double lens_size_of(const solid *of)
-{
-    return of->shape.scale.x;
-}
-
 static bool ends_in(const char *text, const char *ending)
 {
     const size_t a = strlen(text), b = strlen(ending);
@@ -24,28 +19,6 @@ static bool ends_in(const char *text, const char *ending)
 static bool is_shape(const solid *of, const char *word)
 {
     return strcmp(shape_name(of->shape.kind), word) == 0;
-}
-
-static double get(const lens_finder *f, const solid *of, const char *row, int side)
-{
-    char path[2 * SCENE_NAME_MAX], *text = NULL, word[32];
-    double value = 0.0;
-    snprintf(word, sizeof word, row, side);
-    snprintf(path, sizeof path, "%s.%s", of->name, word);
-    if (param_find(PARAM_SOLID, word) && scene_get(f->s, path, &text, NULL) == STATUS_OK)
-        number_parse_real(text, &value);
-    free(text);
-    return value;
-}
-
-status lens_refuse(const lens_finder *f, const solid *of, const char *remedy, const char *what)
-{
-    return diagnose(f->why, STATUS_BAD_INPUT, remedy, "%.60s %s", of->name, what);
-}
-
-double lens_along(const lens_finder *f, const solid *of)
-{
-    return vec3_dot(f->axis, vec3_sub(of->shape.position, f->origin));
 }
 
 static status check_axis(const lens_finder *f, const solid *of)
@@ -128,27 +101,6 @@ static status find(lens_finder *f)
         TRY(check_axis(f, f->lens[i].of));
     qsort(f->lens, f->count, sizeof *f->lens, by_place);
     return STATUS_OK;
-}
-
-/* --- surfaces --- */
-
-lens_surface lens_side_of(const lens_finder *f, const placed_lens *l, int side)
-{
-    const solid *of = l->of;
-    const double k = lens_size_of(of);
-    double power = k * k * k;
-    lens_surface s = {.radius = k * get(f, of, "radius_%d", side),
-                      .conic = get(f, of, "conic_%d", side),
-                      .diameter = k * get(f, of, "diameter_%d", side),
-                      .medium = {.kind = LENS_AIR, .glass_file = -1}};
-    for (int i = 0; i < LENS_EVEN_TERMS; i++, power *= k * k) {
-        char row[16];
-        snprintf(row, sizeof row, "a%d_%%d", 4 + 2 * i);
-        s.even[i] = get(f, of, row, side) / power;
-    }
-    if (s.diameter == 0.0)
-        s.diameter = k * of->shape.diameter;
-    return s;
 }
 
 /* --- the stop --- */

@@ -245,20 +245,6 @@ status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses
 
 /* --- fields and wavelengths of a system's beams --- */
 
-double lens_tidy(double x)
-{
-    char text[NUMBER_TEXT_MAX];
-    double rounded = x;
-    number_parse_real(number_format_digits(x, 12, text), &rounded);
-    return rounded;
-}
-
-bool lens_belongs(const char *system, const char *name)
-{
-    const size_t length = strlen(system);
-    return length == 0 || (strncmp(name, system, length) == 0 && (name[length] == '-' || !name[length]));
-}
-
 static void add_field(lens_prescription *p, double x, double y)
 {
     for (size_t i = 0; i < p->field_count; i++)

@@ -16,70 +16,6 @@
 
 enum { GAP_SAMPLES = 257 };
 
-/* --- parameters by name (lens_reader.h) --- */
-
-void lens_put(lens_target *t, const char *name, const char *row, const char *format, ...)
-{
-    char path[2 * SCENE_NAME_MAX + 2], value[512];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(value, sizeof value, format, list);
-    va_end(list);
-    snprintf(path, sizeof path, "%s.%s", name, row);
-    THEN(t->code, scene_set_property(t->s, path, value, t->why));
-}
-
-void lens_put_number(lens_target *t, const char *name, const char *row, double value)
-{
-    char text[NUMBER_TEXT_MAX];
-    lens_put(t, name, row, "%s", number_format(value, text));
-}
-
-void lens_add_solid(lens_target *t, const char *shape, const char *name)
-{
-    shape_kind kind = {0};
-    THEN(t->code, scene_shape_named(shape, &kind, t->why));
-    THEN(t->code, scene_add_solid(t->s, name, kind, NULL, t->why));
-}
-
-bool lens_has(const scene *s, param_group group, const char *name)
-{
-    return object_find(s, group, name) >= 0;
-}
-
-/* Places a solid at a height along the axis. The first one leads, the others follow it. */
-void lens_put_at(lens_builder *b, const char *name, const lens_leg *leg, double y)
-{
-    const vec3 p = vec3_add(b->at->position, mat3_apply(b->turn, vec3_make(0.0, b->at->scale * y, 0.0))),
-               r = b->at->rotation_deg;
-    if (strcmp(name, b->at->name) != 0) {
-        const vec3 q = vec3_add(leg->at, mat3_apply(leg->turn, vec3_make(0.0, y, 0.0))),
-                   turn = rotation_to_deg(leg->turn);
-        const double k = b->at->scale;
-        lens_put(&b->t, name, "follows", "%s", b->at->name);
-        lens_put(&b->t, name, "offset", "%.17g,%.17g,%.17g", k * q.x + 0.0, k * (q.y - b->leader), k * q.z + 0.0);
-        if (turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0)
-            lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", turn.x + 0.0, turn.y + 0.0, turn.z + 0.0);
-        return;
-    }
-    if (leg->turn.row[1].y != 1.0 && b->t.code == STATUS_OK)
-        b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "begin with a lens, or a mirror that is not tilted",
-                             "the first element of %.60s is a tilted mirror", b->at->name);
-    b->leader = y;
-    lens_put(&b->t, name, "position", "%.17g,%.17g,%.17g", p.x, p.y, p.z);
-    lens_put(&b->t, name, "rotation", "%.17g,%.17g,%.17g", r.x, r.y, r.z);
-}
-
-void lens_part_name(const lens_builder *b, object_name name, const char *format, ...)
-{
-    char rest[32];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(rest, sizeof rest, format, list);
-    va_end(list);
-    snprintf(name, sizeof(object_name), "%.30s-%.31s", b->at->name, rest);
-}
-
 static void name_element(const lens_builder *b, lens_element *e)
 {
     if (b->count == 1)
@@ -89,13 +25,6 @@ static void name_element(const lens_builder *b, lens_element *e)
 }
 
 /* --- elements --- */
-
-double lens_side_height(const lens_builder *b, size_t surface, double rho)
-{
-    const lens_surface *s = &b->p->surface[surface];
-    const double limit = s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho;
-    return b->y[surface] + lens_surface_sag(s, limit);
-}
 
 /* The least distance between two surfaces within a radius; NaN if one of them ends. */
 static double least_gap(const lens_builder *b, size_t front, size_t back, double rim)
