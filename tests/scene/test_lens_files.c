@@ -197,6 +197,7 @@ static void mistakes_are_located(void **state)
     refused("a.zmx",
             ZMX_HEAD "SURF 1\n  TYPE COORDBRK\n  PARM 2 5\n  DISZ 0\nSURF 2\n  GLAS N-BK7\n  DISZ 5\n" ZMX_TAIL, 12, 0,
             "surface 2 is off the axis");
+    refused("a.zmx", ZMX_HEAD "SURF 1\n  TYPE COORDBRK\n  PARM 4 1e9\n" ZMX_TAIL, 10, 10, "out of range");
     refused("a.csv", "radius,thickness,medium,tilt_x\n5,2,,20\n", 2, 0, "surface 1 is tilted");
     refused("a.csv", "radius,thickness,medium,tilt_x\n0,2,mirror,89\n", 2, 0, "along the axis");
     refused("a.zmx", ZMX_HEAD "SURF 1\n  CURV x\n" ZMX_TAIL, 9, 8, "CURV: 'x' is not a number");

@@ -128,6 +128,33 @@ static void a_mangin_mirror_focuses_by_its_vergences(void **state)
     lens_prescription_release(&p);
 }
 
+/* A lens that is given again after a mirror is one solid, and is found twice on the way of the light. */
+static void a_lens_before_a_mirror_is_passed_twice(void **state)
+{
+    (void)state;
+    const char *text =
+        "pupil,10\nradius,thickness,medium,diameter,stop\n80,4,1.5,20,1\n-300,20,,20\n-400,-20,mirror,20\n"
+        "-300,-4,1.5,20\n80,-9,,20\n";
+    const double n = 1.5, P1 = (n - 1.0) / 80.0, P2 = (1.0 - n) / -300.0;
+    double V = P1;
+    V = V / (1.0 - 4.0 * V / n) + P2;
+    V = V / (1.0 - 20.0 * V) + 2.0 / 400.0;
+    V = V / (1.0 - 20.0 * V) + P2;
+    V = V / (1.0 - 4.0 * V / n) + P1;
+    lens_prescription p = parsed("twice.csv", text, strlen(text)), again;
+    assert_near(lens_first_order_of(&p, 587.5618).back, -1.0 / V, 1e-10, "back");
+    scene *s = scene_of(&p, "twice");
+    const vec3 to = crosses(s, &p, 1e-3, vec3_make(0, 0, 0), vec3_make(0, 0, 1), "twice");
+    assert_near(to.z, -1.0 / V, 1e-6, "focus");
+    diagnostic why = {.what = ""};
+    if (lens_of_scene(s, "objective", &again, NULL, &why) != STATUS_OK)
+        fail_msg("%s; %s", why.what, why.remedy);
+    assert_same_system(&p, &again, 1e-10, "twice");
+    lens_prescription_release(&again);
+    scene_destroy(s);
+    lens_prescription_release(&p);
+}
+
 /* --- lens systems of scenes --- */
 
 static const char singlet[] = "render: {unit_m: 0.001}\n"
@@ -331,6 +358,7 @@ int main(void)
         cmocka_unit_test(a_fold_mirror_of_a_zmx_file_turns_the_axis),
         cmocka_unit_test(two_fold_mirrors_lead_to_a_lens),
         cmocka_unit_test(a_mangin_mirror_focuses_by_its_vergences),
+        cmocka_unit_test(a_lens_before_a_mirror_is_passed_twice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,6 +60,8 @@ static status read_parameter(zmx_reader *z)
     if (value == 0.0)
         return STATUS_OK;
     lens_break *b = &z->breaks[r->p->count - 1];
+    if (b->given && fabs(value) > (number >= 3.0 && number <= 5.0 ? 360.0 : 1e9))
+        return lens_wrong(r, 2, "give tilts from -360 to 360 degrees", "the parameter %g is out of range", value);
     if (b->given && number >= 1.0 && number <= 6.0) {
         b->number[(int)number - 1] = value;
         return STATUS_OK;
