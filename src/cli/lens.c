@@ -75,7 +75,7 @@ static void print_surfaces(const lens_prescription *p)
         const lens_surface *s = &p->surface[i];
         bool even = false;
         for (int k = 0; k < LENS_EVEN_TERMS; k++)
-            even |= s->even[k] != 0.0;
+            even |= s->even[k] != 0.0 || s->odd[k] != 0.0;
         printf("%3zu ", i + 1);
         print_number("%14.7g ", s->radius == 0.0 ? INFINITY : s->radius);
         printf("%s%14.7g %14.7g %10.5g  %s%s%s", s->radius == 0.0 ? " " : "", s->thickness, s->diameter, s->conic,
@@ -84,6 +84,9 @@ static void print_surfaces(const lens_prescription *p)
         if (lens_folds(s))
             printf(", tilted %.7g, %.7g degrees", s->tilt_x_deg, s->tilt_y_deg);
         putchar('\n');
+        if (s->form != SIDE_ROUND)
+            printf("%s along x:%8.7g %32s%10.5g  %s\n", "   ", s->radius_x == 0.0 ? INFINITY : s->radius_x, "",
+                   s->conic_x, s->form == SIDE_TORIC ? "toric" : "biconic");
     }
 }
 
@@ -101,6 +104,12 @@ static void print_paraxial(const lens_prescription *p)
     }
     if (f.magnification != 0.0)
         printf("  magnification           %.9g\n", f.magnification);
+    if (lens_is_round(p))
+        return;
+    const lens_first_order x = lens_first_order_x(p, nm);
+    printf("in the meridian of x, as a surface is not round\n");
+    printf("  focal length            %.9g\n  back focal distance     %.9g\n", x.efl, x.back);
+    printf("  image distance          %.9g\n", x.image);
 }
 
 static void print_prescription(const lens_prescription *p)

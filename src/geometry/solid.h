@@ -42,6 +42,10 @@ typedef struct solid_shape {
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
     double diameter_1, diameter_2;                                    /* of its sides; 0: the rim's */
     double even_1[9], even_2[9]; /* of its sides' sag: coefficients of the 4th, 6th, ... 20th power of the radius */
+    double odd_1[9], odd_2[9];   /* of the powers 1, 2, 3, 5, 7, ... 15 */
+    int64_t form_1, form_2;      /* side_form (primitives/asphere.h) */
+    /* of a side that is not round: its curvature along x */
+    double radius_1_x, radius_2_x, conic_1_x, conic_2_x;
     vec3 size;
     const struct mesh *mesh;   /* NULL until loaded */
     const struct mesh *points; /* a copy of the solid is at each vertex; NULL: one solid, or not loaded */

@@ -12,6 +12,7 @@
 /* A surface at one wavelength; indices as lens_index_after has them. */
 typedef struct lens_step {
     double c, k, z;           /* curvature, conic constant, vertex; mm */
+    double c0;                /* curvature at the vertex along Y: of the conic and the coefficient of r^2 */
     even_asphere shape;       /* the same with all coefficients */
     double n, n_after, clear; /* clear radius; INFINITY: none */
     bool mirror, silent;      /* silent: it neither bends nor reflects */
@@ -28,8 +29,12 @@ typedef struct lens_model {
     double unit_mm;
 } lens_model;
 
-/* Sag at a squared radius and its first two derivatives by the radius; NaN beyond the surface's end. */
+/* Sag at a radius, along Y, and its first two derivatives by the radius; NaN beyond the surface's end. */
 double lens_sag(const lens_step *s, double rho, double *slope, double *bend);
+/* The second derivative across that meridian. */
+double lens_bend_across(const lens_step *s, double rho);
+/* Sag at any point, and its derivatives. */
+double lens_height(const lens_step *s, double x, double y, double *by_x, double *by_y);
 
 status lens_model_make(const lens_prescription *p, double lambda_nm, lens_model *out, diagnostic *why);
 

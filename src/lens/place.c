@@ -109,6 +109,17 @@ status lens_open(const char *path, const char *system, const lens_glasses *glass
 
 /* --- the surfaces and the constants --- */
 
+/* The part of the second derivative by rho that 2 dz/dq does not have: n (n - 2) a rho^(n - 2) of each term. */
+static double odd_bend(const even_asphere *e, double rho)
+{
+    double sum = 0.0;
+    for (int i = 0; i < e->odd_terms && rho > 0.0; i++) {
+        const int n = asphere_odd_power(i);
+        sum += n * (n - 2) * e->odd[i] * pow(rho, n - 2);
+    }
+    return sum;
+}
+
 double lens_sag(const lens_step *s, double rho, double *slope, double *bend)
 {
     const even_asphere *e = &s->shape;
@@ -117,20 +128,39 @@ double lens_sag(const lens_step *s, double rho, double *slope, double *bend)
         return *slope = *bend = NAN;
     const double by_q = asphere_slope(e, q);
     *slope = 2.0 * rho * by_q;
-    *bend = 2.0 * by_q + 4.0 * q * asphere_slope_rate(e, q);
+    *bend = 2.0 * by_q + 4.0 * q * asphere_slope_rate(e, q) + odd_bend(e, rho);
     return asphere_sag(e, q);
+}
+
+double lens_bend_across(const lens_step *s, double rho)
+{
+    const even_asphere *e = &s->shape;
+    double slope, bend;
+    const double C = e->curvature_x, g = lens_sag(s, rho, &slope, &bend);
+    if (e->form == SIDE_ROUND)
+        return rho > 1e-12 ? slope / rho : s->c0;
+    const double root = sqrt(1.0 - e->stretch * (s->c * s->c) * (rho * rho));
+    return e->form == SIDE_TORIC ? C / (1.0 - C * g) : C * (2.0 + g * (e->stretch_x * C) / root) / (1.0 + root);
+}
+
+double lens_height(const lens_step *s, double x, double y, double *by_x, double *by_y)
+{
+    double slope, bend;
+    if (s->shape.form != SIDE_ROUND)
+        return asphere_surface(&s->shape, x, y, by_x, by_y);
+    const double rho = hypot(x, y), sag = lens_sag(s, rho, &slope, &bend);
+    *by_x = rho > 0.0 ? slope * x / rho : 0.0, *by_y = rho > 0.0 ? slope * y / rho : 0.0;
+    return sag;
 }
 
 static lens_step step_of(const lens_surface *from, double mm, double z, double n, double lambda_nm)
 {
-    const double index = lens_index_after(from, n, lambda_nm),
-                 c = from->radius == 0.0 ? 0.0 : 1.0 / (from->radius * mm);
-    double even[LENS_EVEN_TERMS];
-    for (int i = 0; i < LENS_EVEN_TERMS; i++)
-        even[i] = from->even[i] / pow(mm, 3 + 2 * i);
-    return (lens_step){.c = c,
+    const double index = lens_index_after(from, n, lambda_nm);
+    const lens_surface own = lens_surface_scaled(from, mm);
+    return (lens_step){.c = own.radius == 0.0 ? 0.0 : 1.0 / own.radius,
                        .k = from->conic,
-                       .shape = asphere_of(c, from->conic, even),
+                       .c0 = lens_surface_curvature(&own, false),
+                       .shape = lens_surface_shape(&own),
                        .z = z,
                        .n = n,
                        .n_after = index,

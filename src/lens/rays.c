@@ -64,13 +64,14 @@ static double meet(const lens_step *s, vec3 o, vec3 d)
     const double B = d.z - s->c * (o.x * d.x + o.y * d.y + k * z * d.z);
     const double C = s->c * (o.x * o.x + o.y * o.y + k * z * z) - 2.0 * z;
     double t = C / (B + copysign(sqrt(B * B - A * C), d.z));
-    for (int i = 0; i < 50 && asphere_has_terms(&s->shape); i++) {
+    const bool aspheric = asphere_has_terms(&s->shape);
+    if (!isfinite(t))
+        t = aspheric ? -(o.z - s->z) / d.z : t; /* the conic does not reach there */
+    for (int i = 0; i < 50 && aspheric; i++) {
         const vec3 p = vec3_add(o, vec3_scale(d, t));
-        const double rho = hypot(p.x, p.y);
-        double slope, bend;
-        const double off = p.z - s->z - lens_sag(s, rho, &slope, &bend);
-        const double across = rho > 0.0 ? slope * (p.x * d.x + p.y * d.y) / rho : 0.0;
-        const double step = off / (d.z - across);
+        double by_x, by_y;
+        const double off = p.z - s->z - lens_height(s, p.x, p.y, &by_x, &by_y);
+        const double step = off / (d.z - (by_x * d.x + by_y * d.y));
         t -= step;
         if (!(fabs(step) > 1e-15 * (1.0 + fabs(t))))
             break;
@@ -85,8 +86,8 @@ static bool is_on(const lens_step *s, vec3 p)
         return fabs(vec3_dot(way, s->normal)) <= ON_SURFACE * (1.0 + vec3_length(way)) &&
                vec3_length(way) <= s->clear * (1.0 + 1e-12);
     const double rho = hypot(p.x, p.y);
-    double slope, bend;
-    const double off = p.z - s->z - lens_sag(s, rho, &slope, &bend);
+    double by_x, by_y;
+    const double off = p.z - s->z - lens_height(s, p.x, p.y, &by_x, &by_y);
     return fabs(off) <= ON_SURFACE * (1.0 + rho) && rho <= s->clear * (1.0 + 1e-12);
 }
 

@@ -14,6 +14,10 @@ static const lens_section sections[] = {
      .meaning = "Gaussian constants at the primary wavelength; positions z from the first vertex, along the axis as if "
                 "no mirror folded it",
      .single = true},
+    {.name = "first-order-x",
+     .x = "",
+     .meaning = "the same in the meridian of X, if a surface is not round: first-order then holds in that of Y",
+     .single = true},
     {.name = "surfaces",
      .x = "",
      .meaning = "vertices, and the marginal and the chief ray of first order at each surface"},
@@ -21,7 +25,8 @@ static const lens_section sections[] = {
     {.name = "seidel",
      .x = "",
      .meaning = "third-order aberrations by surface: S_I spherical, S_II coma, S_III astigmatism, S_IV Petzval, S_V "
-                "distortion; C_L, C_T axial and lateral colour, shortest less longest wavelength"},
+                "distortion; C_L, C_T axial and lateral colour, shortest less longest wavelength; none if a surface is "
+                "not round or has a1 or a3"},
     {.name = "seidel-sum", .x = "", .meaning = "their sums", .single = true},
     {.name = "seidel-waves",
      .x = "",
@@ -147,6 +152,35 @@ static void put_first(lens_study *s)
                                         .value = rows[i].value});
 }
 
+/* Of the other meridian: a line focus of a cylinder is in one of both. */
+static void put_first_x(lens_study *s)
+{
+    if (lens_is_round(s->p))
+        return;
+    const lens_model *m = &s->model[s->primary];
+    const lens_first_order f = lens_first_order_x(s->p, m->lambda_nm);
+    const double mm = m->unit_mm, efl = f.efl * mm, z_last = m->step[m->count - 1].z, rear = z_last + f.back * mm;
+    const struct {
+        const char *name, *unit;
+        double value;
+    } rows[] = {{"efl", "mm", efl},
+                {"bfl", "mm", f.back * mm},
+                {"power", "1/mm", 1.0 / efl},
+                {"z_principal", "mm", f.front * mm + m->n_object * efl},
+                {"z_principal_rear", "mm", rear - m->n_image * efl},
+                {"z_focus_rear", "mm", rear},
+                {"f_number", "", fabs(0.5 * f.stop_height * efl / s->first.stop_radius)},
+                {"z_paraxial_image", "mm", z_last + f.image * mm},
+                {"magnification", "", f.magnification}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        lens_row_put(s->out, (lens_row){.section = "first-order-x",
+                                        .lambda_nm = m->lambda_nm,
+                                        .x = NAN,
+                                        .quantity = rows[i].name,
+                                        .unit = rows[i].unit,
+                                        .value = rows[i].value});
+}
+
 static void put_surfaces(lens_study *s)
 {
     const lens_model *m = &s->model[s->primary];
@@ -206,6 +240,7 @@ static status whole_lens(lens_study *s, diagnostic *why)
 {
     TRY(lens_stop_radius(&s->bench[s->primary], s->p, &s->first, why));
     put_first(s);
+    put_first_x(s);
     put_surfaces(s);
     put_fields(s);
     lens_seidel(s);
@@ -290,7 +325,11 @@ static status make(lens_study *s, lens_model *models, const lens_place *at, isa 
         TRY(lens_model_make(s->p, s->p->wavelength[w].nm, &models[w], why));
     TRY(lens_first_make(s->p, &models[s->primary], &s->first, why));
     if (!(fabs(s->first.power) > 1e-9))
-        return diagnose(why, STATUS_BAD_INPUT, "give a lens with a focus", "the lens is afocal: it has no focus");
+        return diagnose(why, STATUS_BAD_INPUT,
+                        lens_is_round(s->p) ? "give a lens with a focus"
+                                            : "give one with a focus there: radius is that along Y, radius_x along X",
+                        lens_is_round(s->p) ? "the lens is afocal: it has no focus"
+                                            : "the lens is afocal in the meridian of Y");
     TRY(open_benches(s, at, level, why));
     const double cutoff = 1.0 / (models[s->primary].lambda_nm * 1e-6 * s->first.working_number);
     s->frequency_most = s->options->frequency_per_mm > 0.0 ? s->options->frequency_per_mm : fmin(100.0, cutoff);

@@ -14,10 +14,12 @@ static void sums_of(const lens_model *m, const lens_first *first, const double s
     const lens_step *s = &m->step[i];
     const double y = first->marginal.y[i], yb = first->chief.y[i];
     const double u = first->marginal.u[i], ub = first->chief.u[i], u2 = first->marginal.u[i + 1];
-    const double A = s->n * (u + y * s->c), Ab = s->n * (ub + yb * s->c), H = first->invariant;
-    const double bend = u2 / s->n_after - u / s->n, P = s->c * (1.0 / s->n_after - 1.0 / s->n);
+    const double c = s->c0, A = s->n * (u + y * c), Ab = s->n * (ub + yb * c), H = first->invariant;
+    const double bend = u2 / s->n_after - u / s->n, P = c * (1.0 / s->n_after - 1.0 / s->n);
     const double squares = 1.0 / (s->n_after * s->n_after) - 1.0 / (s->n * s->n);
-    const double figure = (s->k * s->c * s->c * s->c + 8.0 * s->shape.even[0]) * (s->n_after - s->n);
+    /* 8 times the coefficient of r^4, less that of the sphere with the vertex's curvature */
+    const double conic = s->k * s->c * s->c * s->c, folded = c == s->c ? 0.0 : s->c * s->c * s->c - c * c * c;
+    const double figure = (conic + folded + 8.0 * s->shape.even[0]) * (s->n_after - s->n);
     const double colour = spread[1] / s->n_after - spread[0] / s->n;
     out[0] = -A * A * y * bend + figure * y * y * y * y;
     out[1] = -A * Ab * y * bend + figure * y * y * y * yb;
@@ -40,9 +42,21 @@ static void spread_at(const lens_study *s, int i, double out[2])
     out[1] = s->model[shortest].step[i].n_after - s->model[longest].step[i].n_after;
 }
 
+/* Whether the wavefront of third order is what the sums describe: of round surfaces without terms of r and r^3. */
+static bool has_sums(const lens_model *m)
+{
+    bool has = true;
+    for (int i = 0; i < m->count; i++) {
+        const even_asphere *e = &m->step[i].shape;
+        has &= m->step[i].silent || (e->form == SIDE_ROUND && e->odd[0] == 0.0 && e->odd[2] == 0.0);
+    }
+    return has;
+}
+
 void lens_seidel(lens_study *s)
 {
     const lens_model *m = &s->model[s->primary];
+    const double known = has_sums(m) ? 0.0 : NAN; /* the sums of a part of the surfaces mean nothing */
     double total[SUMS] = {0.0}, spread[2];
     for (int i = 0; i <= m->count; i++) {
         double own[SUMS];
@@ -51,14 +65,14 @@ void lens_seidel(lens_study *s)
             sums_of(m, &s->first, spread, i, own);
         }
         for (int k = 0; k < SUMS; k++) {
-            total[k] += i < m->count ? own[k] : 0.0;
+            total[k] += (i < m->count ? own[k] : 0.0) + known;
             lens_row_put(s->out, (lens_row){.section = i < m->count ? "seidel" : "seidel-sum",
                                             .surface = i < m->count ? i + 1 : 0,
                                             .x = NAN,
                                             .lambda_nm = m->lambda_nm,
                                             .quantity = sum_names[k],
                                             .unit = "mm",
-                                            .value = i < m->count ? own[k] : total[k]});
+                                            .value = i < m->count ? own[k] + known : total[k]});
         }
     }
     const double wave = m->lambda_nm * 1e-6;
@@ -91,7 +105,7 @@ static void ghost_step(const lens_model *m, int i, bool forth, bool reflects, gh
     const lens_step *s = &m->step[i];
     const double before = forth ? s->n : -s->n_after, after = forth ? s->n_after : -s->n;
     const double next = reflects ? -before : after;
-    r->u = (before * r->u - r->y * (next - before) * s->c) / next;
+    r->u = (before * r->u - r->y * (next - before) * s->c0) / next;
     r->n = next;
 }
 

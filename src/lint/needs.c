@@ -231,6 +231,12 @@ static const needs_row rows[] = {
     FACT(SOLID, "points", no_point_files),
     NEEDS_SET(SOLID, "conic_1", "radius_1!=0", "%.radius_1=2"),
     NEEDS_SET(SOLID, "conic_2", "radius_2!=0", "%.radius_2=-2"),
+    NEEDS_SET(SOLID, "radius_1_x", "form_1!=round", "%.form_1=toric"),
+    NEEDS_SET(SOLID, "radius_2_x", "form_2!=round", "%.form_2=toric"),
+    NEEDS_SET(SOLID, "conic_1_x", "form_1=biconic", "%.form_1=biconic"),
+    NEEDS_SET(SOLID, "conic_2_x", "form_2=biconic", "%.form_2=biconic"),
+    NEEDS_SET(SOLID, "conic_1_x", "radius_1_x!=0", "%.radius_1_x=2"),
+    NEEDS_SET(SOLID, "conic_2_x", "radius_2_x!=0", "%.radius_2_x=-2"),
     NEEDS_SET(SOLID, "contact_angle_deg contact_radius", "capillary_length>0", "%.capillary_length=0.1"),
     NEEDS_SET(SOLID, "capillary_length contact_radius", "contact_angle_deg!=90", "%.contact_angle_deg=20"),
 };

@@ -125,6 +125,10 @@ static const decision decisions[] = {
      "diameter_1 diameter_2 conic_1 conic_2 a4_1 a6_1 a8_1 a10_1 a12_1 a14_1 a16_1 a18_1 a20_1 a4_2 a6_2 a8_2 a10_2 "
      "a12_2 a14_2 a16_2 a18_2 a20_2 size mesh points scale copies spacing",
      SAID, SAID},
+    {PARAM_SOLID,
+     "a1_1 a2_1 a3_1 a5_1 a7_1 a9_1 a11_1 a13_1 a15_1 a1_2 a2_2 a3_2 a5_2 a7_2 a9_2 a11_2 a13_2 a15_2 form_1 form_2 "
+     "radius_1_x radius_2_x conic_1_x conic_2_x",
+     SAID, SAID},
     {PARAM_SOLID, "material_1 material_2 material_rim", ONE_MATERIAL, ONE_MATERIAL},
     {PARAM_SOLID, "shading priority visible", SAID, SAID},
 };

@@ -596,6 +596,48 @@ static void what_cannot_be_reported_says_why(void **state)
     end(b);
 }
 
+/* An astigmat: its foci in both meridians, by first order, narrow pencils and rays. Seidel's sums are not known. */
+static void an_astigmat_has_two_foci(void **state)
+{
+    (void)state;
+    bench *b = begin(LENS_APERTURE_PUPIL, 4.0);
+    add(b, 0.0, 4.0, 1.5, 12.0);
+    lens_surface *back = add(b, -60.0, 150.0, 1.0, 12.0);
+    back->form = SIDE_TORIC, back->radius_x = -100.0;
+    field(b, 3.0);
+    make(b);
+    assert_near(first(b, "efl"), 120.0, 1e-10);
+    assert_near(at(b, "first-order-x", 0, NAN, "efl"), 200.0, 1e-10);
+    assert_near(at(b, "first-order-x", 0, NAN, "bfl"), 200.0, 1e-10);
+    assert_near(at(b, "first-order-x", 0, NAN, "f_number"), 50.0, 1e-10);
+    assert_near(at(b, "field-curves", 0, 0.0, "tangential"), 120.0 - 150.0, 1e-9);
+    assert_near(at(b, "field-curves", 0, 0.0, "sagittal"), 200.0 - 150.0, 1e-9);
+    assert_true(isnan(sum(b, "S_I")) && isnan(at(b, "seidel", 2, NAN, "S_IV")));
+    assert_true(at(b, "spot", 0, NAN, "rms_centroid") > 0.1);
+    end(b);
+}
+
+/* r^2 is the paraboloid, with all of its sums; r and r^3 have none. */
+static void the_square_is_a_paraboloid(void **state)
+{
+    (void)state;
+    bench *b = begin(LENS_APERTURE_PUPIL, 10.0), *c = begin(LENS_APERTURE_PUPIL, 10.0);
+    add(b, 50.0, 4.0, 1.5, 12.0)->conic = -1.0, add(b, 0.0, 97.0, 1.0, 12.0);
+    add(c, 0.0, 4.0, 1.5, 12.0)->odd[1] = 0.01, add(c, 0.0, 97.0, 1.0, 12.0);
+    field(b, 2.0), field(c, 2.0);
+    make(b), make(c);
+    assert_near(first(c, "efl"), 100.0, 1e-10);
+    static const char *const names[] = {"S_I", "S_II", "S_III", "S_IV", "S_V"};
+    for (int k = 0; k < 5; k++)
+        assert_near(sum(b, names[k]), sum(c, names[k]), 1e-14);
+    assert_near(at(b, "field-curves", 0, 2.0, "sagittal"), at(c, "field-curves", 0, 2.0, "sagittal"), 1e-9);
+    assert_near(at(b, "spot", 0, NAN, "rms_centroid"), at(c, "spot", 0, NAN, "rms_centroid"), 1e-12);
+    c->surface[0].odd[2] = 1e-6;
+    make(c);
+    assert_true(isnan(sum(c, "S_I")));
+    end(b), end(c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -618,6 +660,8 @@ int main(void)
         cmocka_unit_test(coated_ghosts_have_the_powers_of_their_layers),
         cmocka_unit_test(a_moved_turned_and_scaled_system_has_the_same_report),
         cmocka_unit_test(what_cannot_be_reported_says_why),
+        cmocka_unit_test(an_astigmat_has_two_foci),
+        cmocka_unit_test(the_square_is_a_paraboloid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -562,7 +562,8 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
         if (!one->mesh)
             one->shape.scale = vec3_make(1.0, 1.0, 1.0);
         for (int k = 0; k < 9; k++)
-            one->shape.even_1[k] = one->shape.even_2[k] = 0.0;
+            one->shape.even_1[k] = one->shape.even_2[k] = one->shape.odd_1[k] = one->shape.odd_2[k] = 0.0;
+        one->shape.form_1 = one->shape.form_2 = SIDE_ROUND;
     }
     for (int i = 0; i < w.light_count; i++)
         if (is_sun(&w.light[i]))

@@ -93,6 +93,54 @@ static void the_space_telescope_is_free_of_spherical_aberration(void **state)
 
 /* --- formats --- */
 
+/* Surfaces that are not round, and odd coefficients, by files and by a scene's solids. */
+static void all_types_of_surfaces_are_held(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "f_number,8\nfield_deg,0\n"
+        "radius,thickness,medium,diameter,conic,a4,a6,a1,a2,a3,form,radius_x,conic_x,stop\n"
+        "50,4,1.5,10,-0.5,1e-6,0,0,0,0,toric,70,0,1\n-60,2,,10,0.25,0,0,0,0,0,biconic,0,0,0\n"
+        "80,3,1.6,10,0,2e-6,0,0.01,0.001,3e-5,round,,,0\n0,40,,10,0,0,-3e-9,0,0,0,toric,-90,0,0\n";
+    lens_prescription p = parsed("a.csv", text, sizeof text - 1);
+    p.surface[1].radius_x = 45.0, p.surface[1].conic_x = -2.0;
+    static const char *const names[] = {"a.csv", "a.zmx"};
+    for (size_t k = 0; k < COUNT(names); k++) {
+        char *out = written(&p, names[k]);
+        lens_prescription again = parsed(names[k], out, strlen(out));
+        assert_same_system(&p, &again, 1e-15, names[k]);
+        assert_true(k == 0 ||
+                    (strstr(out, "TYPE TOROIDAL") && strstr(out, "TYPE BICONICX") && strstr(out, "TYPE ODDASPHE")));
+        free(out);
+        lens_prescription_release(&again);
+    }
+    scene *s = scene_create();
+    diagnostic why = {.what = ""};
+    const lens_placement at = {.name = "lens", .scale = 2.0, .rotation_deg = {30.0, 0.0, 0.0}};
+    if (lens_add_to_scene(s, &p, &at, &why) != STATUS_OK)
+        fail_msg("%s; %s", why.what, why.remedy);
+    lens_prescription back;
+    if (lens_of_scene(s, NULL, &back, NULL, &why) != STATUS_OK)
+        fail_msg("%s; %s", why.what, why.remedy);
+    assert_int_equal(back.count, p.count);
+    for (size_t i = 0; i < p.count; i++)
+        for (int k = 0; k < 25; k++) { /* the same surface, twice as large */
+            const double x = k % 5 - 2.0, y = k / 5 - 2.0, h = lens_surface_height(&p.surface[i], x, y);
+            assert_near(lens_surface_height(&back.surface[i], 2.0 * x, 2.0 * y), 2.0 * h, 1e-14, "height");
+        }
+    lens_prescription_release(&back);
+    scene_destroy(s);
+    p.surface[2].odd[7] = 1e-20; /* r^13 */
+    char *out = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&out, &size);
+    assert_int_equal(lens_file_write(&p, "a.zmx", f, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "surface 3 has coefficients that a .zmx file cannot hold"));
+    fclose(f);
+    free(out);
+    lens_prescription_release(&p);
+}
+
 static void formats_hold_what_they_are_given(void **state)
 {
     (void)state;
@@ -201,7 +249,12 @@ static void mistakes_are_located(void **state)
     refused("a.csv", "radius,thickness,medium,tilt_x\n5,2,,20\n", 2, 0, "surface 1 is tilted");
     refused("a.csv", "radius,thickness,medium,tilt_x\n0,2,mirror,89\n", 2, 0, "along the axis");
     refused("a.zmx", ZMX_HEAD "SURF 1\n  CURV x\n" ZMX_TAIL, 9, 8, "CURV: 'x' is not a number");
-    refused("a.zmx", ZMX_HEAD "SURF 1\n  PARM 1 0.5\n" ZMX_TAIL, 9, 10, "r^2");
+    refused("a.zmx", ZMX_HEAD "SURF 1\n  PARM 11 0.5\n" ZMX_TAIL, 9, 8, "parameter 11");
+    refused("a.zmx", ZMX_HEAD "SURF 1\n  TYPE ODDASPHE\n  PARM 9 0.5\n" ZMX_TAIL, 10, 8, "parameter 9");
+    refused("a.zmx", ZMX_HEAD "SURF 1\n  TYPE BICONICX\n  PARM 3 0.5\n" ZMX_TAIL, 10, 8, "parameter 3");
+    refused("a.csv", "thickness,form\n1,round\n1,oval\n", 3, 3, "unknown form 'oval'");
+    refused("a.csv", "thickness,radius_x\n1,20\n", 2, 3, "the surface is round, and has no radius_x");
+    refused("a.csv", "thickness,form,conic_x\n1,toric,1\n", 2, 9, "has no conic_x");
     refused("a.zmx", ZMX_HEAD "SURF 1\n  GLAS SK99 0 0 1.5 40\n" ZMX_TAIL, 9, 8, "the glass 'SK99'");
     refused("a.zmx", ZMX_HEAD "SURF 1\n  DISZ INFINITY\n" ZMX_TAIL, 9, 8, "infinitely far");
     refused("a.zmx", "UNIT FURLONG\n", 1, 6, "unknown unit");
@@ -324,6 +377,7 @@ int main(void)
         cmocka_unit_test(thin_pencils_through_the_solids_meet_the_paraxial_focus),
         cmocka_unit_test(the_space_telescope_is_free_of_spherical_aberration),
         cmocka_unit_test(formats_hold_what_they_are_given),
+        cmocka_unit_test(all_types_of_surfaces_are_held),
         cmocka_unit_test(scenes_give_their_systems_back),
         cmocka_unit_test(files_of_zemax_are_read_in_both_encodings),
         cmocka_unit_test(mistakes_are_located),

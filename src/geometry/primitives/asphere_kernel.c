@@ -1,9 +1,9 @@
-/* A lens with a side that is an even asphere (asphere.h), or is smaller than the rim: x^2 + z^2 <= radius^2 between two
- * sides, each of which is an asphere or a conic up to a clear radius, and a level ring beyond it. Faces: 0 rim, 1 the
- * side at 0, 2 the side at top, 3 and 4 the rings around them.
+/* A lens with a side that is an asphere, biconic or toric (asphere.h), or is smaller than the rim: x^2 + z^2 <=
+ * radius^2 between two sides, each of which is such a surface or a conic up to a clear radius, and a level ring beyond
+ * it. Faces: 0 rim, 1 the side at 0, 2 the side at top, 3 and 4 the rings around them.
  *
  * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
- * derivative is bounded by asphere_bend. On an interval of half width h about m with |f''| <= K:
+ * derivative is bounded by asphere_bend or asphere_curve. On an interval of half width h about m with |f''| <= K:
  *
  *     |f'(m)| >= K h: f is monotonic;  |f(m)| >= |f'(m)| h + K h^2 / 2: f has no zero (Taylor's theorem).
  *
@@ -11,6 +11,8 @@
  * the intervals show all crossings (as Moore's interval Newton method isolates roots: Moore, Kearfott and Cloud,
  * Introduction to Interval Analysis, ch. 8). A line far from tangency needs one interval. The shape has at most three
  * chords (shapes/lens.c).
+ *
+ * The cone a1 rho is convex along a line: the change of its slope is added to K h, and that times h to K h^2 / 2.
  *
  * For a ray that starts on the surface, f(0) = 0 is taken as exact: f is t times the difference quotient, whose terms
  * do not cancel, and next to 0 it has the sign of the derivative. */
@@ -40,6 +42,13 @@ static double height_inside(const asphere_line *l, double t, double *slope)
 {
     const local_ray *o = &l->base;
     const double x = o->x + t * o->dx, z = o->z + t * o->dz, q = x * x + z * z;
+    if (l->e.form != SIDE_ROUND) {
+        double by_x, by_z;
+        const double sag = asphere_surface(&l->e, x, z, &by_x, &by_z);
+        *slope = l->inwards * (o->dy - (by_x * o->dx + by_z * o->dz));
+        return l->starts_on ? t * (l->inwards * (o->dy - asphere_chord(&l->e, o->x, o->z, o->dx, o->dz, t)))
+                            : l->inwards * ((o->y + t * o->dy) - sag);
+    }
     *slope = l->inwards * (o->dy - asphere_slope(&l->e, q) * (2.0 * (x * o->dx + z * o->dz)));
     if (!l->starts_on)
         return l->inwards * ((o->y + t * o->dy) - asphere_sag(&l->e, q));
@@ -53,20 +62,48 @@ static bool is_inside(const asphere_line *l, double t)
     return height_inside(l, t, &slope) >= 0.0;
 }
 
+/* Bounds of the height's second derivative between a and b. */
+static asphere_range bend_between(const asphere_line *l, double a, double b, double q_low, double q_high)
+{
+    const local_ray *o = &l->base;
+    if (l->e.form != SIDE_ROUND) {
+        const double x_a = o->x + a * o->dx, x_b = o->x + b * o->dx, z_a = o->z + a * o->dz, z_b = o->z + b * o->dz;
+        return asphere_curve(&l->e, (asphere_range){lesser(x_a, x_b), greater(x_a, x_b)},
+                             (asphere_range){lesser(z_a, z_b), greater(z_a, z_b)}, o->dx, o->dz);
+    }
+    const asphere_range bend = asphere_bend(&l->e, q_low, q_high);
+    return (asphere_range){l->across2 * bend.low, l->across2 * bend.high};
+}
+
+/* By how much the slope of the cone a1 rho, which is convex along a line, changes between a and b. */
+static double cone_between(const asphere_line *l, double a, double b, double q_a, double q_b)
+{
+    const local_ray *o = &l->base;
+    const double across = sqrt(l->across2), along = o->x * o->dx + o->z * o->dz;
+    if (!(q_a > 0.0 && q_b > 0.0))
+        return 2.0 * across * magnitude(l->e.odd[0]);
+    return magnitude(l->e.odd[0]) * ((along + b * l->across2) / sqrt(q_b) - (along + a * l->across2) / sqrt(q_a)) +
+           0x1p-50 * across * magnitude(l->e.odd[0]);
+}
+
 /* Whether f is known to change its sign at most once between a and b, up to rounding. */
 static bool is_simple(const asphere_line *l, double a, double b)
 {
     const double half = 0.5 * (b - a), middle = 0.5 * (a + b), q_a = rho2_at(l, a), q_b = rho2_at(l, b);
     const double nearest = -(l->base.x * l->base.dx + l->base.z * l->base.dz) / l->across2; /* to the axis */
     const double q_low = nearest > a && nearest < b ? rho2_at(l, nearest) : lesser(q_a, q_b);
-    const asphere_range bend = asphere_bend(&l->e, q_low, greater(q_a, q_b));
-    const double most = l->across2 * greater(magnitude(bend.low), magnitude(bend.high)); /* of |f''| */
-    const double curve = 0.5 * most * half * half;
+    const asphere_range bend = bend_between(l, a, b, q_low, greater(q_a, q_b));
+    const double most = greater(magnitude(bend.low), magnitude(bend.high)); /* of |f''| */
+    double curve = 0.5 * most * half * half, turn = most * half;
+    if (l->e.odd[0] != 0.0) {
+        const double cone = cone_between(l, a, b, q_a, q_b);
+        curve += cone * half, turn += cone;
+    }
     if (curve <= l->touch)
         return true;
     double slope;
     const double height = height_inside(l, middle, &slope);
-    return magnitude(slope) >= most * half || magnitude(height) >= magnitude(slope) * half + curve;
+    return magnitude(slope) >= turn || magnitude(height) >= magnitude(slope) * half + curve;
 }
 
 /* The zero between a and b, where f changes its sign once: by Newton's steps within the bracket, and bisection. */
@@ -278,15 +315,15 @@ static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch
     }
 }
 
-/* A point projected onto side k by one Newton step along the gradient (-2 x dz/dq, 1, -2 z dz/dq) of y - z, the normal
- * out of the lens, and the distance. */
+/* A point projected onto side k by one Newton step along the gradient (-dz/dx, 1, -dz/dz) of y less the height, the
+ * normal out of the lens, and the distance. */
 static side_point point_on_asphere(const primitive *p, int k, vec3 q)
 {
     const even_asphere e = lens_asphere(p, k);
-    const double rho2 = q.x * q.x + q.z * q.z, vertex = k == 0 ? 0.0 : p->top, out = k == 0 ? -1.0 : 1.0;
-    const double level = (q.y - vertex) - asphere_sag(&e, rho2), twice = -2.0 * asphere_slope(&e, rho2);
-    const double gx = twice * q.x, gz = twice * q.z, g2 = 1.0 + gx * gx + gz * gz, inverse = 1.0 / sqrt(g2);
-    const double step = -level / g2;
+    double by_x, by_z;
+    const double vertex = k == 0 ? 0.0 : p->top, out = k == 0 ? -1.0 : 1.0;
+    const double level = (q.y - vertex) - asphere_surface(&e, q.x, q.z, &by_x, &by_z), gx = -by_x, gz = -by_z;
+    const double g2 = 1.0 + gx * gx + gz * gz, inverse = 1.0 / sqrt(g2), step = -level / g2;
     return (side_point){.point = vec3_make(q.x + step * gx, q.y + step, q.z + step * gz),
                         .normal = vec3_scale(vec3_make(gx, 1.0, gz), out * inverse),
                         .apart = magnitude(level) * inverse};

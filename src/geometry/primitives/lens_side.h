@@ -114,7 +114,12 @@ ALWAYS_INLINE side_point point_on_side(const lens_side *e, vec3 q)
 static inline even_asphere lens_asphere(const primitive *p, int k)
 {
     const lens_details *d = p->details;
-    return asphere_of(p->lens.curvature[k], p->lens.conic[k], d ? d->even[k] : NULL);
+    even_asphere e = asphere_of(p->lens.curvature[k], p->lens.conic[k], d ? d->even[k] : NULL);
+    if (d && d->general[k]) {
+        asphere_add_odd(&e, d->odd[k]);
+        e.form = d->form[k], e.curvature_x = d->curvature_x[k], e.stretch_x = 1.0 + d->conic_x[k];
+    }
+    return e;
 }
 
 /* The radius up to which a side reaches, infinite without a ring. */
@@ -124,23 +129,34 @@ static inline double lens_clear(const primitive *p, int k)
     return d ? d->clear[k] : HUGE_VAL;
 }
 
-static inline double lens_height(const primitive *p, int k, double rho2)
+static inline double lens_height(const primitive *p, int k, double x, double z)
 {
     const even_asphere e = lens_asphere(p, k);
-    const double clear = lens_clear(p, k);
-    return (k == 0 ? 0.0 : p->top) + asphere_sag(&e, lesser(rho2, clear * clear));
+    const double clear = lens_clear(p, k), rho2 = x * x + z * z;
+    double by_x, by_z;
+    return (k == 0 ? 0.0 : p->top) + (e.form == SIDE_ROUND ? asphere_sag(&e, lesser(rho2, clear * clear))
+                                                           : asphere_surface(&e, x, z, &by_x, &by_z));
 }
 
 /* The height of the ring around a side. */
 static inline double lens_ring(const primitive *p, int k)
 {
-    return lens_height(p, k, HUGE_VAL);
+    return lens_height(p, k, 0.0, HUGE_VAL);
 }
 
 static inline bool lens_contains(const primitive *p, vec3 q)
 {
-    const double rho2 = q.x * q.x + q.z * q.z;
-    return rho2 <= p->radius * p->radius && q.y >= lens_height(p, 0, rho2) && q.y <= lens_height(p, 1, rho2);
+    return q.x * q.x + q.z * q.z <= p->radius * p->radius && q.y >= lens_height(p, 0, q.x, q.z) &&
+           q.y <= lens_height(p, 1, q.x, q.z);
+}
+
+/* The height at which the rim ends: the outermost one if it is not the same all around. */
+static inline double lens_rim_end(const primitive *p, int k)
+{
+    const lens_details *d = p->details;
+    if (d && d->form[k] != SIDE_ROUND)
+        return k == 0 ? d->low[0] : p->top + d->high[1];
+    return lens_height(p, k, 0.0, p->radius);
 }
 
 static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
@@ -160,7 +176,7 @@ static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
  * the axis. */
 static inline surface_mapping lens_mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
-    const double r = p->radius, bottom = lens_height(p, 0, r * r), top = lens_height(p, 1, r * r);
+    const double r = p->radius, bottom = lens_rim_end(p, 0), top = lens_rim_end(p, 1);
     if (face == 0)
         return mapping_around(q.x, q.z, r, q.y - bottom, top - bottom, size);
     return mapping_flat(q.x + r, face == 1 || face == 3 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);

@@ -1,9 +1,9 @@
-/* The shape lens: within the radius diameter / 2 of the axis, between two conics of revolution about it, or even
- * aspheres (lens_profile.h): side 1 through the position, its vertex, and side 2 through the vertex `thickness` above.
- * A side with a smaller diameter of its own is continued by a level ring, so that the rim may be wider than a sphere.
- * A radius of curvature is positive if its centre lies above the vertex, as for light that travels upwards (Hecht,
- * Optics, 5.2): a biconvex lens has radius_1 > 0 > radius_2. 0 is a flat side. Coefficients count upwards for both
- * sides. */
+/* The shape lens: within the radius diameter / 2 of the axis, between two conics of revolution about it, or aspheres
+ * (lens_profile.h), or sides that are not round (lens_toric.c): side 1 through the position, its vertex, and side 2
+ * through the vertex `thickness` above. A side with a smaller diameter of its own is continued by a level ring, so that
+ * the rim may be wider than a sphere. A radius of curvature is positive if its centre lies above the vertex, as for
+ * light that travels upwards (Hecht, Optics, 5.2): a biconvex lens has radius_1 > 0 > radius_2. 0 is a flat side.
+ * Coefficients count upwards for both sides. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
@@ -26,6 +26,8 @@ static status check_side(const solid_shape *s, int k, diagnostic *why)
     if (!isfinite(radius) || !isfinite(e.conic))
         return diagnose(why, STATUS_BAD_INPUT, "use finite numbers; a radius of 0 is a flat side",
                         "radius_%d or conic_%d is not finite", k + 1, k + 1);
+    if (e.twisted)
+        return lens_twisted_check(s, k, why);
     const double fraction = e.aspheric ? sqrt(1.0 - ASPHERE_ROOT2_LEAST) : 1.0;
     const double half = e.conic > -1.0 ? fraction * fabs(radius) / sqrt(1.0 + e.conic) : HUGE_VAL;
     const double diameter = 2.0 * lens_clear_of(s, k);
@@ -54,16 +56,27 @@ static status check_diameters(const solid_shape *s, diagnostic *why)
                     s->diameter);
 }
 
+static status check_coefficients(const solid_shape *s, int k, diagnostic *why)
+{
+    const double *even = k == 0 ? s->even_1 : s->even_2, *odd = k == 0 ? s->odd_1 : s->odd_2;
+    for (int i = 0; i < ASPHERE_TERMS + ASPHERE_ODD; i++)
+        if (!isfinite(i < ASPHERE_TERMS ? even[i] : odd[i - ASPHERE_TERMS]))
+            return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "a%d_%d is not finite",
+                            i < ASPHERE_TERMS ? 4 + 2 * i : asphere_odd_power(i - ASPHERE_TERMS), k + 1);
+    return STATUS_OK;
+}
+
 static status check_form(const solid_shape *s, int k, lens_form *form, diagnostic *why)
 {
-    const double *even = k == 0 ? s->even_1 : s->even_2;
-    for (int i = 0; i < ASPHERE_TERMS; i++)
-        if (!isfinite(even[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "a%d_%d is not finite", 4 + 2 * i, k + 1);
     double within;
     *form = lens_form_of(s, k, &within);
     if (*form < LENS_TURNS)
         return STATUS_OK;
+    if (lens_profile_of(s, k).twisted && *form == LENS_TURNS)
+        return diagnose(
+            why, STATUS_BAD_INPUT,
+            "use coefficients that leave its curve convex or concave as radius_1_x is, or a radius_1_x of 0",
+            "side %d, a curve with coefficients that is turned about a line, may be crossed too often", k + 1);
     char remedy[160], diameter[48] = "smaller diameter"; /* if the side is not allowed even near the axis */
     if (within > 0.0)
         snprintf(diameter, sizeof diameter, "diameter of at most %.6g", 2.0 * within);
@@ -101,10 +114,13 @@ static status check(const solid_shape *s, diagnostic *why)
     TRY(check_length(s->diameter, "diameter", why));
     TRY(check_length(s->thickness, "thickness", why));
     TRY(check_diameters(s, why));
+    TRY(check_coefficients(s, 0, why));
+    TRY(check_coefficients(s, 1, why));
     TRY(check_side(s, 0, why));
     TRY(check_side(s, 1, why));
     TRY(check_forms(s, why));
-    const double at = lens_nearest_sides(s), gap = lens_gap_at(s, at);
+    double at;
+    const double gap = lens_least_gap(s, &at);
     if (gap >= -PLACED_SLACK * (s->thickness + s->diameter)) /* 0: the sides meet in a sharp edge */
         return STATUS_OK;
     char remedy[160];
@@ -116,8 +132,8 @@ static status check(const solid_shape *s, diagnostic *why)
 static bool contains(const solid_shape *s, vec3 p)
 {
     const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
-    const double rho = sqrt(p.x * p.x + p.z * p.z);
-    return rho <= lens_rim(s) && p.y >= lens_height_at(&one, rho) && p.y <= lens_height_at(&two, rho);
+    return sqrt(p.x * p.x + p.z * p.z) <= lens_rim(s) && p.y >= lens_height_over(&one, p.x, p.z) &&
+           p.y <= lens_height_over(&two, p.x, p.z);
 }
 
 static double lowest(const solid_shape *s)
@@ -140,6 +156,11 @@ static size_t details(const solid_shape *s, void *out)
         d->low[k] = lens_lowest_of(s, k) - side[k].vertex;
         d->high[k] = lens_highest_of(s, k) - side[k].vertex;
         d->clear[k] = side[k].clear;
+        d->general[k] = side[k].twisted || side[k].e.odd_terms > 0;
+        for (int i = 0; i < ASPHERE_ODD; i++)
+            d->odd[k][i] = side[k].e.odd[i];
+        d->form[k] = side[k].e.form, d->curvature_x[k] = side[k].e.curvature_x;
+        d->conic_x[k] = k == 0 ? s->conic_1_x : s->conic_2_x;
     }
     const bool conics = !side[0].aspheric && !side[1].aspheric;
     return conics && !lens_has_ring(&side[0]) && !lens_has_ring(&side[1]) ? 0 : sizeof(lens_details);
@@ -183,6 +204,8 @@ static shape_extent extent(const solid_shape *s)
 static double farthest_of_side(const solid_shape *s, int k, vec3 d)
 {
     const lens_profile e = lens_profile_of(s, k);
+    if (e.twisted)
+        return lens_twisted_reach(s, k, d);
     const double out = hypot(d.x, d.z), outwards = k == 0 ? -d.y : d.y, slope = out / outwards;
     const double at_rim = lens_rim(s) * out + lens_edge(s, k) * d.y;
     double rho = lens_clear_of(s, k);
@@ -200,7 +223,8 @@ static double farthest(const solid_shape *s, vec3 d)
 
 static double thickness(const solid_shape *s)
 {
-    return fmax(0.0, lens_gap_at(s, lens_nearest_sides(s)));
+    double at;
+    return fmax(0.0, lens_least_gap(s, &at));
 }
 
 /* A biconvex lens. */
@@ -214,6 +238,9 @@ static void fit(solid_shape *s, double size)
     s->diameter_1 = s->diameter_2 = 0.0;
     for (int i = 0; i < ASPHERE_TERMS; i++)
         s->even_1[i] = s->even_2[i] = 0.0;
+    for (int i = 0; i < ASPHERE_ODD; i++)
+        s->odd_1[i] = s->odd_2[i] = 0.0;
+    s->form_1 = s->form_2 = SIDE_ROUND;
 }
 
 /* The outline of the rim contains convex sides; any other side is a separate piece. */
@@ -226,6 +253,10 @@ static int rings(const solid_shape *s, shape_ring *out)
         double within;
         const bool convex = lens_form_of(s, k, &within) == LENS_CONVEX && !lens_has_ring(&e);
         const int piece = convex ? 0 : ++pieces;
+        if (e.twisted) {
+            count += lens_twisted_rings(s, k, piece, out + count);
+            continue;
+        }
         for (int i = 0; i < CIRCLES; i++) {
             const double rho = lens_clear_of(s, k) * i / (CIRCLES - 1);
             out[count++] = (shape_ring){.part = piece, .y = lens_height_at(&e, rho), .x = rho, .z = rho};
@@ -238,25 +269,32 @@ static int rings(const solid_shape *s, shape_ring *out)
     return count;
 }
 
-/* From the axis along side 1 to the rim, and back along side 2; a sharp edge is one point. */
+/* From the axis along side 1 to the rim, and back along side 2; a sharp edge is one point. A side that is not round
+ * moves a level disc's triangles. */
 static status tessellation(const solid_shape *s, int part, mesh **out, diagnostic *why)
 {
     (void)part;
+    const bool twisted = lens_profile_of(s, 0).twisted || lens_profile_of(s, 1).twisted;
     profile_point profile[2 * ARC_STEPS + 4];
     size_t count = 0;
-    const bool is_sharp = !(lens_edge(s, 1) - lens_edge(s, 0) > PLACED_SLACK * (s->thickness + s->diameter));
+    const bool is_sharp =
+        !twisted && !(lens_edge(s, 1) - lens_edge(s, 0) > PLACED_SLACK * (s->thickness + s->diameter));
     for (int k = 0; k < 2; k++) {
         const lens_profile e = lens_profile_of(s, k);
-        const int steps = lens_is_flat(&e) ? 1 : ARC_STEPS, ring = lens_has_ring(&e);
+        const int steps = lens_is_flat(&e) && !twisted ? 1 : ARC_STEPS, ring = lens_has_ring(&e);
         for (int i = k && is_sharp ? 1 : 0; i <= steps + ring; i++) {
             double sine, cosine;
             const int step = k == 0 ? i : steps + ring - i; /* beyond `steps`: the ring's outer edge */
             elementary_sincos_deg(90.0 * (step < steps ? step : steps) / steps, &sine, &cosine);
             const double rho = step > steps ? lens_rim(s) : lens_clear_of(s, k) * sine;
-            profile[count++] = (profile_point){rho, lens_height_at(&e, rho)};
+            profile[count++] = (profile_point){rho, twisted ? k : lens_height_at(&e, rho)};
         }
     }
-    return tessellate_lathe(profile, count, out, why);
+    TRY(tessellate_lathe(profile, count, out, why));
+    const status code = twisted ? lens_twist_mesh(s, *out, why) : STATUS_OK;
+    if (code != STATUS_OK)
+        mesh_release(*out), *out = NULL;
+    return code;
 }
 
 const shape_rule shape_lens = {
@@ -264,12 +302,15 @@ const shape_rule shape_lens = {
     .meaning =
         "x^2 + z^2 <= (diameter / 2)^2, between side 1, through its position, and side 2, which crosses the axis "
         "at y = thickness: spheres, or conics, of signed radii of curvature radius_1 and radius_2, positive if "
-        "the centre lies above the side, 0 for a flat one; with a4_1 to a20_2 even aspheres; a side with a smaller "
+        "the centre lies above the side, 0 for a flat one; with a1_1 to a20_2 aspheres, with form_1 or form_2 biconic "
+        "or toric; a side with a smaller "
         "diameter_1 or diameter_2 of its own ends in a level ring; the sides do not cross within the rim",
     .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "diameter_1", "diameter_2", "conic_1",
                         "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1", "a18_1", "a20_1", "a4_2",
-                        "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "material_1",
-                        "material_2", "material_rim", "points", "scale"),
+                        "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "a1_1", "a2_1", "a3_1",
+                        "a5_1", "a7_1", "a9_1", "a11_1", "a13_1", "a15_1", "a1_2", "a2_2", "a3_2", "a5_2", "a7_2",
+                        "a9_2", "a11_2", "a13_2", "a15_2", "form_1", "form_2", "radius_1_x", "radius_2_x", "conic_1_x",
+                        "conic_2_x", "material_1", "material_2", "material_rim", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

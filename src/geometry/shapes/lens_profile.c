@@ -14,6 +14,14 @@ lens_profile lens_profile_of(const solid_shape *s, int k)
         .clear = ring ? 0.5 * diameter : HUGE_VAL,
         .concave = k == 0 ? radius < 0.0 : radius > 0.0,
     };
+    asphere_add_odd(&e.e, k == 0 ? s->odd_1 : s->odd_2);
+    const double across = k == 0 ? s->radius_1_x : s->radius_2_x;
+    const side_form form = (side_form)(k == 0 ? s->form_1 : s->form_2);
+    e.twisted = form != SIDE_ROUND && (radius != 0.0 || across != 0.0 || asphere_has_terms(&e.e));
+    if (e.twisted) {
+        e.e.form = form, e.e.curvature_x = across == 0.0 ? 0.0 : 1.0 / across;
+        e.e.stretch_x = 1.0 + (k == 0 ? s->conic_1_x : s->conic_2_x);
+    }
     e.aspheric = asphere_has_terms(&e.e);
     return e;
 }
@@ -111,18 +119,6 @@ double lens_reach_of(const solid_shape *s, int k, double out, double up)
     return rho * out + lens_height_at(&e, rho) * up;
 }
 
-double lens_lowest_of(const solid_shape *s, int k)
-{
-    const lens_profile e = lens_profile_of(s, k);
-    return e.aspheric ? -lens_reach_of(s, k, 0.0, -1.0) : fmin(e.vertex, lens_edge(s, k));
-}
-
-double lens_highest_of(const solid_shape *s, int k)
-{
-    const lens_profile e = lens_profile_of(s, k);
-    return e.aspheric ? lens_reach_of(s, k, 0.0, 1.0) : fmax(e.vertex, lens_edge(s, k));
-}
-
 /* --- how the sides bend ---
  *
  * Bounds by interval arithmetic, on 256 intervals of q = rho^2 per side.
@@ -182,14 +178,60 @@ static asphere_range range_of(double conic_from, double conic_to, int terms, con
                            fmin(all.high, fmax(conic_from, conic_to) + (value + spread))};
 }
 
+/* Which sum of a side's terms, and for a rho^n its factors of a and what is less than n in the power of rho. */
+enum { SUM_P, SUM_G, SUM_TURN, SUM_BEND };
+
+static double term_factor(int sum, double n)
+{
+    return sum == SUM_P   ? n / 2.0
+           : sum == SUM_G ? n * (n - 2.0) / 4.0
+                          : (sum == SUM_TURN ? n * (n - 2.0) * (n - 4.0) / 8.0 : n * (n - 1.0) / 2.0);
+}
+
+static double power_of(double rho, int n)
+{
+    double power = 1.0;
+    for (int i = 0; i < (n < 0 ? -n : n); i++)
+        power *= rho;
+    return n < 0 ? 1.0 / power : power;
+}
+
+/* range_of for a side with odd coefficients, term by term, as each is monotonic; with the lowest power taken out if
+ * only the sign counts. */
+static asphere_range range_with_odd(const even_asphere *e, int sum, double conic_from, double conic_to, bool sign,
+                                    double from, double to)
+{
+    asphere_range r = {fmin(conic_from, conic_to), fmax(conic_from, conic_to)};
+    double k[2 * ASPHERE_TERMS + 3] = {0.0};
+    for (int i = 0; i < ASPHERE_ODD; i++)
+        k[asphere_odd_power(i)] = e->odd[i];
+    for (int i = 0; i < ASPHERE_TERMS; i++)
+        k[4 + 2 * i] = e->even[i];
+    int lowest = 1;
+    while (k[lowest] == 0.0)
+        lowest++;
+    const int less = sign && e->curvature == 0.0 ? lowest : sum == SUM_G ? 4 : sum == SUM_TURN ? 6 : 2;
+    for (int n = 1; n < 2 * ASPHERE_TERMS + 3; n++) {
+        const double factor = k[n] * term_factor(sum, n);
+        if (factor == 0.0)
+            continue;
+        const double one = factor * power_of(sqrt(from), n - less), two = factor * power_of(sqrt(to), n - less);
+        r.low += fmin(one, two), r.high += fmax(one, two);
+    }
+    return r;
+}
+
 /* An interval that contains the sum conic / w^power + k0 + k1 q + ... If the side has no curvature, the sum is divided
  * by its lowest power of q, which leaves its sign unchanged. */
-static asphere_range sign_of(const even_asphere *e, double conic, int power, const double *k, double from, double to)
+static asphere_range sign_of(const even_asphere *e, int sum, double conic, int power, const double *k, double from,
+                             double to)
 {
     double a = conic, b = conic, shifted[ASPHERE_TERMS + 1] = {0.0};
     int first = 0;
     for (int i = 0; i < power; i++)
         a /= asphere_root(e, from), b /= asphere_root(e, to);
+    if (e->odd_terms)
+        return range_with_odd(e, sum, a, b, true, from, to);
     while (e->curvature == 0.0 && first < e->terms && k[first] == 0.0)
         first++;
     for (int i = first; i <= e->terms; i++)
@@ -202,9 +244,15 @@ static double least_turning(const even_asphere *e, const form_terms *k, double f
 {
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;
     const double c3 = 0.25 * e->stretch * c * c * c, c5 = 1.5 * e->stretch * c * c * c3;
-    const asphere_range p = range_of(0.5 * c * a, 0.5 * c * b, k->count, k->p, from, to),
-                        g = range_of(c3 * a * a * a, c3 * b * b * b, k->count, k->g, from, to),
-                        d = range_of(c5 * a * a * a * a * a, c5 * b * b * b * b * b, k->count, k->turn, from, to);
+    const bool odd = e->odd_terms > 0;
+    const double ends[3][2] = {
+        {0.5 * c * a, 0.5 * c * b}, {c3 * a * a * a, c3 * b * b * b}, {c5 * a * a * a * a * a, c5 * b * b * b * b * b}};
+    const double *const terms[3] = {k->p, k->g, k->turn};
+    asphere_range of[3];
+    for (int i = 0; i < 3; i++)
+        of[i] = odd ? range_with_odd(e, i, ends[i][0], ends[i][1], false, from, to)
+                    : range_of(ends[i][0], ends[i][1], k->count, terms[i], from, to);
+    const asphere_range p = of[SUM_P], g = of[SUM_G], d = of[SUM_TURN];
     const double least = g.low > 0.0 || g.high < 0.0 ? fmin(fabs(g.low), fabs(g.high)) : 0.0;
     return 3.0 * least * least - fmax(fmax(p.low * d.low, p.low * d.high), fmax(p.high * d.low, p.high * d.high));
 }
@@ -226,8 +274,9 @@ static bool turns_once(const form_so_far *f)
 static void extend(form_so_far *f, const even_asphere *e, const form_terms *k, double inwards, double from, double to)
 {
     const double c = e->curvature;
-    const asphere_range p = sign_of(e, 0.5 * c, 1, k->p, from, to), bend = sign_of(e, 0.5 * c, 3, k->bend, from, to),
-                        g = sign_of(e, 0.25 * e->stretch * c * c * c, 3, k->g, from, to);
+    const asphere_range p = sign_of(e, SUM_P, 0.5 * c, 1, k->p, from, to),
+                        bend = sign_of(e, SUM_BEND, 0.5 * c, 3, k->bend, from, to),
+                        g = sign_of(e, SUM_G, 0.25 * e->stretch * c * c * c, 3, k->g, from, to);
     const bool up = p.low >= 0.0 && bend.low >= 0.0, down = p.high <= 0.0 && bend.high <= 0.0;
     f->convex &= inwards > 0.0 ? up : down;
     f->concave &= inwards > 0.0 ? down : up;
@@ -268,7 +317,7 @@ static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
     return f.convex ? LENS_CONVEX : f.concave ? LENS_CONCAVE : LENS_ONE_TURN;
 }
 
-lens_form lens_form_of(const solid_shape *s, int k, double *within)
+lens_form lens_round_form(const solid_shape *s, int k, double *within)
 {
     const lens_profile e = lens_profile_of(s, k);
     *within = lens_clear_of(s, k);

@@ -8,9 +8,10 @@
 typedef struct lens_profile {
     even_asphere e;
     double conic, vertex;
-    double clear; /* radius up to which it reaches, a level ring beyond it; infinite without a ring */
-    bool concave; /* by its radius; a side with coefficients: see lens_form_of */
-    bool aspheric;
+    double clear;  /* radius up to which it reaches, a level ring beyond it; infinite without a ring */
+    bool concave;  /* by its radius; a side with coefficients: see lens_form_of */
+    bool aspheric; /* more than a conic */
+    bool twisted;  /* not round */
 } lens_profile;
 
 /* k: 0 for side 1, 1 for side 2 */
@@ -37,19 +38,29 @@ static inline double lens_rim(const solid_shape *s)
     return 0.5 * s->diameter;
 }
 
-/* The heights of the rim's two edges. */
 /* The radius up to which a side reaches: the rim's, or less. */
 double lens_clear_of(const solid_shape *s, int k);
+/* The height of the rim's edge at a round side. */
 double lens_edge(const solid_shape *s, int k);
-/* The distance between the sides at a radius, and the radius where they are nearest to each other. */
+/* The distance between round sides at a radius, and the radius where they are nearest to each other. */
 double lens_gap_at(const solid_shape *s, double rho);
 double lens_nearest_sides(const solid_shape *s);
+/* The least distance between sides of any form, and the radius where that is. */
+double lens_least_gap(const solid_shape *s, double *at);
 
 /* The least and the largest height of a side within the rim. */
 double lens_lowest_of(const solid_shape *s, int k);
 double lens_highest_of(const solid_shape *s, int k);
-/* The largest rho out + height up within the rim. */
+/* The largest rho out + height up within the rim, of a round side. */
 double lens_reach_of(const solid_shape *s, int k, double out, double up);
+
+/* --- for sides that are not round (lens_toric.c) --- */
+
+/* The height of a side of any form. */
+double lens_height_over(const lens_profile *e, double x, double z);
+/* The largest d . p of a side. */
+double lens_twisted_reach(const solid_shape *s, int k, vec3 d);
+status lens_twisted_check(const solid_shape *s, int k, diagnostic *why);
 
 /* The form of a side, seen from outside. Values 1 to 3 are the most intervals in which a line is on the inner side: for
  * LENS_ONE_TURN by Rolle's theorem, as the second derivative of the height along any line changes its sign at most
@@ -59,3 +70,10 @@ typedef enum lens_form { LENS_CONVEX = 1, LENS_CONCAVE = 2, LENS_ONE_TURN = 3, L
 /* The form of a side without its ring. A flat side is convex. within: the radius up to which a side with coefficients
  * is not steep, and turns no more than the kernels can bound. */
 lens_form lens_form_of(const solid_shape *s, int k, double *within);
+/* The same for a side's curve along z, as a round side. */
+lens_form lens_round_form(const solid_shape *s, int k, double *within);
+
+/* The rings of a side's own piece and, unless that is 0, those of its edge; returns their number, at most 9. */
+int lens_twisted_rings(const solid_shape *s, int k, int piece, shape_ring *out);
+/* Moves the triangles of a disc with levels at 0 and 1, whose rim has the lens's radius, to the lens. */
+status lens_twist_mesh(const solid_shape *s, mesh *m, diagnostic *why);

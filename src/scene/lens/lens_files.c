@@ -3,10 +3,10 @@
  * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
  * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
  * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius; vdx, vdy,
- * vcx and vcy, vignetting factors with a number for each field. Columns:
- * radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, stop
- * (any text but 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and
- * thickness may be missing. */
+ * vcx and vcy, vignetting factors with a number for each field. Columns: radius (0, empty or inf: flat), thickness,
+ * medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, a1, a2, a3, a5 ... a15, form (round, biconic or
+ * toric) with radius_x and conic_x, stop (any text but 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror
+ * that folds the axis); all but radius and thickness may be missing. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -86,11 +86,16 @@ typedef enum lens_column {
     COLUMN_NAME,
     COLUMN_TILT_X,
     COLUMN_TILT_Y,
-    COLUMN_EVEN
+    COLUMN_EVEN,
+    COLUMN_ODD = COLUMN_EVEN + LENS_EVEN_TERMS,
+    COLUMN_FORM = COLUMN_ODD + LENS_ODD_TERMS,
+    COLUMN_RADIUS_X,
+    COLUMN_CONIC_X
 } lens_column;
 const char *const lens_column_words[LENS_COLUMNS] = {
-    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name", "tilt_x", "tilt_y",
-    "a4",     "a6",        "a8",     "a10",      "a12",   "a14",  "a16",  "a18",  "a20"};
+    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name", "tilt_x", "tilt_y",   "a4",
+    "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",  "a1",     "a2",       "a3",
+    "a5",     "a7",        "a9",     "a11",      "a13",   "a15",  "form", "radius_x", "conic_x"};
 
 const char *const lens_key_words[LENS_KEYS] = {
     "title",         "unit_mm",        "object_distance", "pupil", "f_number", "object_na", "field_deg", "field_height",
@@ -217,7 +222,8 @@ static status cell_number(const lens_reader *r, const int at[LENS_COLUMNS], int 
 {
     const char *text = cell(r, at, column);
     *out = 0.0;
-    if (!*text || (column == COLUMN_RADIUS && (strcasecmp(text, "inf") == 0 || strcasecmp(text, "infinity") == 0)))
+    if (!*text || ((column == COLUMN_RADIUS || column == COLUMN_RADIUS_X) &&
+                   (strcasecmp(text, "inf") == 0 || strcasecmp(text, "infinity") == 0)))
         return STATUS_OK;
     return lens_number(r, at[column], lens_column_words[column], out);
 }
@@ -227,6 +233,25 @@ static void drop_empty_cells(lens_reader *r, int least)
 {
     while (r->count > least && !*r->word[r->count - 1])
         r->count--;
+}
+
+static status read_form(const lens_reader *r, const int at[LENS_COLUMNS], lens_surface *s)
+{
+    static const char *const words[] = {"round", "biconic", "toric"};
+    const char *text = cell(r, at, COLUMN_FORM);
+    const int form = *text ? index_of(text, words, 3) : SIDE_ROUND;
+    if (form < 0)
+        return lens_wrong(r, at[COLUMN_FORM], "give round, biconic or toric", "unknown form '%.40s'", text);
+    s->form = (side_form)form;
+    TRY(cell_number(r, at, COLUMN_RADIUS_X, &s->radius_x));
+    TRY(cell_number(r, at, COLUMN_CONIC_X, &s->conic_x));
+    if (s->conic_x != 0.0 && s->form != SIDE_BICONIC)
+        return lens_wrong(r, at[COLUMN_CONIC_X], "give the form biconic, or a conic_x of 0",
+                          "the surface is not biconic, and has no conic_x");
+    return s->radius_x != 0.0 && s->form == SIDE_ROUND
+               ? lens_wrong(r, at[COLUMN_RADIUS_X], "give the form biconic or toric, or a radius_x of 0",
+                            "the surface is round, and has no radius_x")
+               : STATUS_OK;
 }
 
 static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS], int cells)
@@ -250,6 +275,9 @@ static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS], int cells
     TRY(cell_number(r, at, COLUMN_TILT_Y, &s->tilt_y_deg));
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
         TRY(cell_number(r, at, COLUMN_EVEN + i, &s->even[i]));
+    for (int i = 0; i < LENS_ODD_TERMS; i++)
+        TRY(cell_number(r, at, COLUMN_ODD + i, &s->odd[i]));
+    TRY(read_form(r, at, s));
     if (s->diameter < 0.0 || s->hole < 0.0)
         return lens_wrong(r, at[s->diameter < 0.0 ? COLUMN_DIAMETER : COLUMN_HOLE], "give 0 or more",
                           "a diameter below 0 is out of range");
@@ -346,7 +374,8 @@ static status check(const lens_reader *r)
         lens_reader at = *r;
         make_plain(r->p->surface[i].name);
         at.line = s->line;
-        if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most)
+        if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most ||
+            fabs(s->radius_x) > most || fabs(s->conic_x) > most)
             return lens_wrong(&at, -1, "use numbers below 1e9", "a number of surface %zu is too large", i + 1);
         if (lens_folds(s) && !(s->mirror && lens_is_flat(s) && s->medium.kind == LENS_AIR))
             return lens_wrong(&at, -1, "tilt flat mirrors in air only; in a scene, any solid can be turned",

@@ -150,20 +150,25 @@ double lens_along(const lens_finder *f, const solid *of)
 lens_surface lens_side_of(const lens_finder *f, const placed_lens *l, int side)
 {
     const solid *of = l->of;
-    const double k = lens_size_of(of);
-    double power = k * k * k;
-    lens_surface s = {.radius = k * get(f, of, "radius_%d", side),
+    lens_surface s = {.radius = get(f, of, "radius_%d", side),
                       .conic = get(f, of, "conic_%d", side),
-                      .diameter = k * get(f, of, "diameter_%d", side),
+                      .form = (side_form)(side == 1 ? of->shape.form_1 : of->shape.form_2),
+                      .radius_x = get(f, of, "radius_%d_x", side),
+                      .conic_x = get(f, of, "conic_%d_x", side),
+                      .diameter = get(f, of, "diameter_%d", side),
                       .medium = {.kind = LENS_AIR, .glass_file = -1}};
-    for (int i = 0; i < LENS_EVEN_TERMS; i++, power *= k * k) {
-        char row[16];
+    char row[16];
+    for (int i = 0; i < LENS_EVEN_TERMS; i++) {
         snprintf(row, sizeof row, "a%d_%%d", 4 + 2 * i);
-        s.even[i] = get(f, of, row, side) / power;
+        s.even[i] = get(f, of, row, side);
+    }
+    for (int i = 0; i < LENS_ODD_TERMS; i++) {
+        snprintf(row, sizeof row, "a%d_%%d", asphere_odd_power(i));
+        s.odd[i] = get(f, of, row, side);
     }
     if (s.diameter == 0.0)
-        s.diameter = k * of->shape.diameter;
-    return s;
+        s.diameter = of->shape.diameter;
+    return lens_surface_scaled(&s, lens_size_of(of));
 }
 
 /* Appends a surface at y; the thickness of the one before it follows. */

@@ -1,5 +1,6 @@
 /* What the elements of a lens system are made of, and what holds them: media, stop, mounts and tube, and the screen
  * (lens_prescription.h). */
+#include "base/elementary.h"
 #include "base/number.h"
 #include "scene/lens/lens_reader.h"
 #include "scene/model/edit/edit.h"
@@ -77,11 +78,20 @@ void lens_part_name(const lens_builder *b, object_name name, const char *format,
     snprintf(name, sizeof(object_name), "%.30s-%.31s", b->at->name, rest);
 }
 
-double lens_side_height(const lens_builder *b, size_t surface, double rho)
+double lens_side_height_at(const lens_builder *b, size_t surface, double rho, double deg)
 {
     const lens_surface *s = &b->p->surface[surface];
-    const double limit = s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho;
-    return b->y[surface] + lens_surface_sag(s, limit);
+    double sine, cosine;
+    if (s->form == SIDE_ROUND)
+        return b->y[surface] + lens_surface_sag(s, s->diameter > 0.0 ? fmin(rho, 0.5 * s->diameter) : rho);
+    elementary_sincos_deg(deg, &sine, &cosine);
+    return b->y[surface] + lens_surface_height(s, rho * sine, rho * cosine);
+}
+
+double lens_side_height(const lens_builder *b, size_t surface, double rho, bool highest)
+{
+    const double one = lens_side_height_at(b, surface, rho, 0.0), two = lens_side_height_at(b, surface, rho, 90.0);
+    return (one > two) == highest ? one : two;
 }
 
 /* --- media --- */
@@ -166,7 +176,8 @@ void lens_add_hole(lens_builder *b, const lens_element *e, double hole)
     const double glass = lens_is_air(&b->p->surface[e->front].medium) ? 0.0 : fabs(b->p->surface[e->front].thickness),
                  length = e->y_2 - e->y_1 + glass;
     const lens_surface *of = &b->p->surface[e->front];
-    const double sag = fabs(lens_surface_sag(of, 0.5 * e->diameter));
+    const double half_of = 0.5 * e->diameter,
+                 sag = fmax(fabs(lens_surface_sag(of, half_of)), fabs(lens_surface_height(of, half_of, 0.0)));
     lens_add_solid(&b->t, "cylinder", name);
     lens_put(&b->t, name, "material", "%s", plug);
     lens_put_at(b, name, &e->leg, e->y_1 - sag - length);
@@ -277,7 +288,7 @@ void lens_add_mounts(lens_builder *b, double outer)
         const double rim = 0.5 * e->diameter * (1.0 - LENS_RIM_GAP);
         if (!e->medium)
             return; /* a tube would shade mirrors */
-        const double y_1 = lens_side_height(b, e->front, rim), y_2 = lens_side_height(b, e->back, rim),
+        const double y_1 = lens_side_height(b, e->front, rim, true), y_2 = lens_side_height(b, e->back, rim, false),
                      thin = fmin(RING_THICKNESS * e->diameter, 0.5 * (y_2 - y_1));
         low = fmin(low, y_1), high = fmax(high, y_2);
         lens_part_name(b, name, "mount-%zu", i + 1);

@@ -1,6 +1,5 @@
 /* Media, surfaces and paraxial properties of a lens prescription (lens_prescription.h). */
 #include "scene/lens/lens_prescription.h"
-#include "geometry/primitives/asphere.h"
 #include "geometry/solid.h"
 #include "scene/lens/lens_reader.h"
 
@@ -123,9 +122,29 @@ bool lens_media_match(const lens_medium *a, const lens_medium *b)
     return a->n_d == b->n_d && a->V_d == b->V_d;
 }
 
+even_asphere lens_surface_shape(const lens_surface *s)
+{
+    even_asphere e = asphere_of(s->radius == 0.0 ? 0.0 : 1.0 / s->radius, s->conic, s->even);
+    asphere_add_odd(&e, s->odd);
+    e.form = s->form;
+    e.curvature_x = s->radius_x == 0.0 ? 0.0 : 1.0 / s->radius_x, e.stretch_x = 1.0 + s->conic_x;
+    return e;
+}
+
+lens_surface lens_surface_scaled(const lens_surface *s, double k)
+{
+    lens_surface out = *s;
+    out.radius *= k, out.radius_x *= k, out.diameter *= k;
+    for (int i = 0; i < LENS_EVEN_TERMS; i++)
+        out.even[i] /= pow(k, 3 + 2 * i);
+    for (int i = 0; i < LENS_ODD_TERMS; i++)
+        out.odd[i] /= pow(k, asphere_odd_power(i) - 1);
+    return out;
+}
+
 double lens_surface_sag(const lens_surface *s, double rho)
 {
-    const even_asphere e = asphere_of(s->radius == 0.0 ? 0.0 : 1.0 / s->radius, s->conic, s->even);
+    const even_asphere e = lens_surface_shape(s);
     return asphere_reaches(&e, rho * rho) ? asphere_sag(&e, rho * rho) : NAN;
 }
 
@@ -154,17 +173,21 @@ mat3 lens_fold(const lens_surface *s)
 
 bool lens_is_flat(const lens_surface *s)
 {
-    bool flat = s->radius == 0.0;
+    bool flat = s->radius == 0.0 && (s->form == SIDE_ROUND || s->radius_x == 0.0);
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
         flat &= s->even[i] == 0.0;
+    for (int i = 0; i < LENS_ODD_TERMS; i++)
+        flat &= s->odd[i] == 0.0;
     return flat;
 }
 
 void lens_turn_round(lens_surface *s)
 {
-    s->radius = -s->radius;
+    s->radius = -s->radius, s->radius_x = -s->radius_x;
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
         s->even[i] = -s->even[i];
+    for (int i = 0; i < LENS_ODD_TERMS; i++)
+        s->odd[i] = -s->odd[i];
 }
 
 double lens_index_after(const lens_surface *s, double before, double lambda_nm)
@@ -193,6 +216,28 @@ double lens_field_most(const lens_prescription *p)
     return most;
 }
 
+double lens_surface_height(const lens_surface *s, double x, double y)
+{
+    const even_asphere e = lens_surface_shape(s);
+    double by_x, by_y;
+    return s->form == SIDE_ROUND ? lens_surface_sag(s, hypot(x, y)) : asphere_surface(&e, x, y, &by_x, &by_y);
+}
+
+double lens_surface_curvature(const lens_surface *s, bool along_x)
+{
+    const double radius = along_x && s->form != SIDE_ROUND ? s->radius_x : s->radius,
+                 c = radius == 0.0 ? 0.0 : 1.0 / radius;
+    return along_x && s->form != SIDE_ROUND ? c : c + 2.0 * s->odd[1];
+}
+
+bool lens_is_round(const lens_prescription *p)
+{
+    bool round = true;
+    for (size_t i = 0; i < p->count; i++)
+        round &= p->surface[i].form == SIDE_ROUND;
+    return round;
+}
+
 /* --- paraxial rays ---
  *
  * A ray has the height y and the slope u = dy/dz before each surface. Refraction: n' u' = n u - y (n' - n) c; after a
@@ -200,12 +245,13 @@ double lens_field_most(const lens_prescription *p)
 
 typedef struct paraxial_system {
     const lens_prescription *p;
+    bool along_x;
     double index[LENS_SURFACES_MAX + 1]; /* before each surface, and in the image space */
 } paraxial_system;
 
-static paraxial_system system_of(const lens_prescription *p, double lambda_nm)
+static paraxial_system system_of(const lens_prescription *p, bool along_x, double lambda_nm)
 {
-    paraxial_system s = {.p = p, .index = {lens_medium_index(&p->object_medium, lambda_nm)}};
+    paraxial_system s = {.p = p, .along_x = along_x, .index = {lens_medium_index(&p->object_medium, lambda_nm)}};
     for (size_t i = 0; i < p->count; i++)
         s.index[i + 1] = lens_index_after(&p->surface[i], s.index[i], lambda_nm);
     return s;
@@ -216,7 +262,7 @@ static lens_trail follow(const paraxial_system *s, double y, double u)
     lens_trail t;
     for (size_t i = 0; i < s->p->count; i++) {
         const lens_surface *of = &s->p->surface[i];
-        const double c = of->radius == 0.0 ? 0.0 : 1.0 / of->radius;
+        const double c = lens_surface_curvature(of, s->along_x);
         t.y[i] = y, t.u[i] = u;
         u = (s->index[i] * u - y * (s->index[i + 1] - s->index[i]) * c) / s->index[i + 1];
         y += of->thickness * u;
@@ -277,9 +323,9 @@ static void set_rays(const paraxial_system *s, lens_first_order *f)
     f->chief = follow(s, -f->pupil * f->field_slope, f->field_slope);
 }
 
-lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm)
+static lens_first_order first_order(const lens_prescription *p, bool along_x, double lambda_nm)
 {
-    const paraxial_system s = system_of(p, lambda_nm);
+    const paraxial_system s = system_of(p, along_x, lambda_nm);
     const double n = s.index[0], n_image = s.index[p->count];
     lens_first_order f = {.direction = n_image < 0.0 ? -1.0 : 1.0, .efl = INFINITY};
     if (p->count == 0)
@@ -304,6 +350,16 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
     return f;
 }
 
+lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm)
+{
+    return first_order(p, false, lambda_nm);
+}
+
+lens_first_order lens_first_order_x(const lens_prescription *p, double lambda_nm)
+{
+    return first_order(p, true, lambda_nm);
+}
+
 /* Real rays are outside paraxial ones; a rim that just lets these pass would vignette them. */
 #define ROOM_FOR_REAL_RAYS 1.05
 
@@ -311,7 +367,8 @@ void lens_prescription_complete(lens_prescription *p)
 {
     if (p->count == 0)
         return;
-    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const double nm = p->wavelength[p->primary].nm;
+    const lens_first_order f = lens_first_order_of(p, nm), x = lens_first_order_x(p, nm);
     if (p->stop < 0)
         lens_note(p, "no stop is stated: it is surface %d, which a beam on the axis fills first", f.stop + 1);
     if (p->stop < 0 && p->aperture_kind != LENS_APERTURE_STOP)
@@ -321,7 +378,8 @@ void lens_prescription_complete(lens_prescription *p)
         /* of wide fields, paraxial rays are farther out than the surface reaches */
         const double reach =
             s->radius == 0.0 || s->conic <= -1.0 ? INFINITY : 1.9 * fabs(s->radius) / sqrt(1.0 + s->conic);
-        const double across = 2.0 * (fabs(f.marginal.y[i]) + fabs(f.chief.y[i])),
+        const double across = 2.0 * fmax(fabs(f.marginal.y[i]) + fabs(f.chief.y[i]),
+                                         fabs(x.marginal.y[i]) + fabs(x.chief.y[i])),
                      needed = fmin(lens_folds(s) ? across / lens_tilt(s).row[2].z : across, reach);
         if (!(s->diameter > 0.0) && isfinite(needed))
             s->diameter = (int)i == p->stop ? f.stop_diameter : ROOM_FOR_REAL_RAYS * needed;
@@ -329,4 +387,6 @@ void lens_prescription_complete(lens_prescription *p)
     lens_surface *last = &p->surface[p->count - 1];
     if (last->thickness == 0.0 && isfinite(f.image))
         last->thickness = f.image;
+    else if (last->thickness == 0.0 && isfinite(x.image)) /* a cylinder's line */
+        last->thickness = x.image;
 }

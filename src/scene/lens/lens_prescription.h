@@ -10,14 +10,15 @@
  * borrowed from the scene or held by the caller. Errors: STATUS_BAD_INPUT with file, line, column and remedy. */
 #pragma once
 
+#include "geometry/primitives/asphere.h"
 #include "scene/model/medium.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
-/* EVEN_TERMS: coefficients of r^4, r^6, ... r^20. */
-enum { LENS_EVEN_TERMS = 9, LENS_SURFACES_MAX = 200, LENS_LIST_MAX = 24, LENS_NAME_MAX = 64 };
+/* EVEN_TERMS: coefficients of r^4, r^6, ... r^20; ODD_TERMS: of r, r^2, r^3, r^5, ... r^15. */
+enum { LENS_EVEN_TERMS = 9, LENS_ODD_TERMS = 9, LENS_SURFACES_MAX = 200, LENS_LIST_MAX = 24, LENS_NAME_MAX = 64 };
 
 typedef enum lens_medium_kind {
     LENS_AIR,       /* the surroundings */
@@ -42,10 +43,13 @@ typedef struct lens_surface {
     double radius;                /* 0: flat */
     double conic;                 /* conic constant k; 0: sphere */
     double even[LENS_EVEN_TERMS]; /* sag = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + even[0] r^4 + even[1] r^6 + ... */
-    double thickness;             /* to the next surface; after the last surface, to the image */
-    lens_medium medium;           /* after the surface; for a mirror that before it */
-    double diameter;              /* clear diameter; 0: not stated */
-    double hole;                  /* diameter of the hole in a mirror; 0: none */
+    double odd[LENS_ODD_TERMS];   /* + odd[0] r + odd[1] r^2 + odd[2] r^3 + odd[3] r^5 + ... */
+    side_form form;               /* geometry/primitives/asphere.h; not round: the above holds along y, this along x: */
+    double radius_x, conic_x;
+    double thickness;   /* to the next surface; after the last surface, to the image */
+    lens_medium medium; /* after the surface; for a mirror that before it */
+    double diameter;    /* clear diameter; 0: not stated */
+    double hole;        /* diameter of the hole in a mirror; 0: none */
     /* Of a flat mirror that folds the axis: its normal is the axis, turned by tilt_y about Y and then by tilt_x about X
      * (Y to Z). What follows is given as if the mirror was not tilted, so that first-order data are those of the
      * unfolded system, along the folded axis. */
@@ -116,8 +120,17 @@ double lens_medium_index(const lens_medium *m, double lambda_nm);
 /* Whether two media have the same index at all wavelengths. Pure. */
 bool lens_media_match(const lens_medium *a, const lens_medium *b);
 
-/* The sag of a surface at a radius; NaN beyond the end of its conic. Pure. */
+/* The sag of a surface at a radius along y; NaN beyond the end of its conic. Pure. */
 double lens_surface_sag(const lens_surface *s, double rho);
+/* The same at any point; a side that is not round goes on beyond its end. Pure. */
+double lens_surface_height(const lens_surface *s, double x, double y);
+even_asphere lens_surface_shape(const lens_surface *s);
+/* The shape of a surface k times as large; what is not of its shape is unchanged but for its diameter. Pure. */
+lens_surface lens_surface_scaled(const lens_surface *s, double k);
+/* The curvature at the vertex, along y or x. Pure. */
+double lens_surface_curvature(const lens_surface *s, bool along_x);
+/* Whether all surfaces are round. Pure. */
+bool lens_is_round(const lens_prescription *p);
 
 bool lens_folds(const lens_surface *s);
 /* Rotations in a frame of columns X, Y, Z with Z along the axis: to the normal of a fold mirror, and to the axis after
@@ -164,8 +177,9 @@ typedef struct lens_first_order {
     lens_trail chief;      /* of the outermost field */
 } lens_first_order;
 
-/* Pure. */
+/* In the meridian of y; ..._x: in that of x. Pure. */
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
+lens_first_order lens_first_order_x(const lens_prescription *p, double lambda_nm);
 
 /* Fills what the file leaves open, with a note: the stop, which is the surface that a beam on the axis fills first (it
  * stays -1 where that surface's own edge is the aperture); clear diameters from the paraxial rays of axis and outermost field (never below
@@ -173,8 +187,8 @@ lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_n
 void lens_prescription_complete(lens_prescription *p);
 
 /* Files of lens prescriptions, by their ending:
- *   .zmx   sequential lens files of Zemax, in UTF-8 or UTF-16; surfaces STANDARD and EVENASPH, and coordinate breaks
- *          that fold the axis at flat mirrors
+ *   .zmx   sequential lens files of Zemax, in UTF-8 or UTF-16; surfaces STANDARD, EVENASPH, ODDASPHE, BICONICX and
+ *          TOROIDAL, and coordinate breaks that fold the axis at flat mirrors
  *   .dat   tables of pbrt: lines of radius, thickness, index and diameter; radius 0 is the stop
  *   .csv   tables with a header (lens_files.c states its keys and columns), which hold everything
  * Ownership: the caller releases the prescription. Errors: STATUS_BAD_INPUT with the file, line, column and remedy. */
@@ -190,7 +204,7 @@ typedef struct lens_glasses {
 
 /* The columns and keys of .csv files (lens_files.c). */
 /* The last four keys are vignetting factors, which scenes do not hold. */
-enum { LENS_COLUMNS = 19, LENS_KEYS = 15, LENS_SCENE_KEYS = 11 };
+enum { LENS_COLUMNS = 31, LENS_KEYS = 15, LENS_SCENE_KEYS = 11 };
 extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
 
 /* Whether a path ends as such a file does. */

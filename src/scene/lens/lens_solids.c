@@ -31,10 +31,12 @@ static double least_gap(const lens_builder *b, size_t front, size_t back, double
 {
     double least = INFINITY;
     for (int i = 0; i < GAP_SAMPLES; i++) {
-        const double rho = rim * i / (GAP_SAMPLES - 1),
-                     gap = lens_side_height(b, back, rho) - lens_side_height(b, front, rho);
-        if (!(gap >= least))
-            least = gap;
+        const double rho = rim * i / (GAP_SAMPLES - 1);
+        for (double deg = 0.0; deg <= 90.0; deg += 7.5) {
+            const double gap = lens_side_height_at(b, back, rho, deg) - lens_side_height_at(b, front, rho, deg);
+            if (!(gap >= least))
+                least = gap;
+        }
     }
     return least;
 }
@@ -54,6 +56,22 @@ static void put_side(lens_builder *b, const char *name, int side, const lens_sur
         snprintf(row, sizeof row, "a%d_%d", 4 + 2 * i, side);
         lens_put_number(&b->t, name, row, of->even[i] / power);
     }
+    for (int i = 0; i < LENS_ODD_TERMS; i++) {
+        if (of->odd[i] == 0.0)
+            continue;
+        const int n = asphere_odd_power(i);
+        snprintf(row, sizeof row, "a%d_%d", n, side);
+        lens_put_number(&b->t, name, row, of->odd[i] / pow(scale, n - 1));
+    }
+    if (of->form == SIDE_ROUND)
+        return;
+    snprintf(row, sizeof row, "form_%d", side);
+    lens_put(&b->t, name, row, "%s", of->form == SIDE_TORIC ? "toric" : "biconic");
+    snprintf(row, sizeof row, "radius_%d_x", side);
+    lens_put_number(&b->t, name, row, of->radius_x * scale);
+    snprintf(row, sizeof row, "conic_%d_x", side);
+    if (of->form == SIDE_BICONIC)
+        lens_put_number(&b->t, name, row, of->conic_x);
 }
 
 static status element_check(lens_builder *b, const lens_element *e)
@@ -74,8 +92,9 @@ static void put_element(lens_builder *b, const lens_element *e)
     lens_put_at(b, e->name, &e->leg, e->y_1 - e->before);
     lens_put_number(&b->t, e->name, "thickness", (e->length + e->before + e->after) * scale);
     lens_put_number(&b->t, e->name, "diameter", e->diameter * scale);
-    for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim */
-        const double own = b->p->surface[k == 0 ? e->front : e->back].diameter;
+    for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim; one that is not round goes on up to it */
+        const lens_surface *of = &b->p->surface[k == 0 ? e->front : e->back];
+        const double own = of->form == SIDE_ROUND ? of->diameter : 0.0;
         lens_put_number(&b->t, e->name, k == 0 ? "diameter_1" : "diameter_2",
                         own > 0.0 && own < e->diameter ? own * scale : 0.0);
     }
@@ -235,8 +254,8 @@ static void add_mirror(lens_builder *b, size_t i, double direction)
                         .direction = direction,
                         .leg = turned(&b->leg[i], b->y[i], lens_tilt(s))};
     name_element(b, e);
-    const double sag = lens_surface_sag(s, 0.5 * s->diameter),
-                 thickness = 0.125 * s->diameter + fmax(0.0, sag * direction);
+    const double sag = lens_surface_sag(s, 0.5 * s->diameter), sag_x = lens_surface_height(s, 0.5 * s->diameter, 0.0),
+                 thickness = 0.125 * s->diameter + fmax(0.0, fmax(sag * direction, sag_x * direction));
     if ((!(s->diameter > 0.0) || isnan(sag)) && b->t.code == STATUS_OK)
         b->t.code = diagnose(b->t.why, STATUS_BAD_INPUT, "give a diameter within the surface",
                              "the mirror, surface %zu, has no diameter, or a larger one than its surface", i + 1);

@@ -85,10 +85,23 @@ static int terms_of(const lens_prescription *p)
     return terms;
 }
 
+/* The number of odd coefficients, and whether some surface is not round. */
+static int odd_terms_of(const lens_prescription *p)
+{
+    int terms = 0;
+    for (size_t i = 0; i < p->count; i++)
+        for (int k = terms; k < LENS_ODD_TERMS; k++)
+            if (p->surface[i].odd[k] != 0.0)
+                terms = k + 1;
+    return terms;
+}
+
 static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
 {
     char word[LENS_NAME_MAX];
-    const int terms = terms_of(p);
+    static const char *const forms[] = {"round", "biconic", "toric"};
+    const int terms = terms_of(p), odd = odd_terms_of(p);
+    const bool round = lens_is_round(p);
     bool folds = false;
     for (size_t i = 0; i < p->count; i++)
         folds |= lens_folds(&p->surface[i]);
@@ -98,7 +111,9 @@ static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
     fputs(folds ? ",tilt_x,tilt_y" : "", out);
     for (int k = 0; k < terms; k++)
         fprintf(out, ",a%d", 4 + 2 * k);
-    fputs(",name\n", out);
+    for (int k = 0; k < odd; k++)
+        fprintf(out, ",a%d", asphere_odd_power(k));
+    fputs(round ? ",name\n" : ",form,radius_x,conic_x,name\n", out);
     for (size_t i = 0; i < p->count; i++) {
         const lens_surface *s = &p->surface[i];
         put_number(out, "", s->radius);
@@ -112,6 +127,13 @@ static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
             put_number(out, ",", s->tilt_x_deg), put_number(out, ",", s->tilt_y_deg);
         for (int k = 0; k < terms; k++)
             put_number(out, ",", s->even[k]);
+        for (int k = 0; k < odd; k++)
+            put_number(out, ",", s->odd[k]);
+        if (!round) {
+            fprintf(out, ",%s", forms[s->form]);
+            put_number(out, ",", s->radius_x);
+            put_number(out, ",", s->conic_x);
+        }
         fputc(',', out);
         put_text(out, s->name, false);
         fputc('\n', out);
@@ -125,7 +147,7 @@ static status write_dat(const lens_prescription *p, FILE *out, diagnostic *why)
 {
     for (size_t i = 0; i < p->count; i++) {
         const lens_surface *s = &p->surface[i];
-        bool plain = !s->mirror && s->conic == 0.0;
+        bool plain = !s->mirror && s->conic == 0.0 && s->form == SIDE_ROUND && odd_terms_of(p) == 0;
         for (int k = 0; k < LENS_EVEN_TERMS; k++)
             plain &= s->even[k] == 0.0;
         if (!plain)
@@ -168,6 +190,64 @@ static void put_zmx_glass(const lens_surface *s, FILE *out)
     fputs(" 0 0 0 0 0 0\n", out);
 }
 
+/* The coefficient of r^n. */
+static double term_of(const lens_surface *s, int n)
+{
+    return n % 2 == 0 && n > 2 ? s->even[n / 2 - 2] : s->odd[n < 3 ? n - 1 : (n + 1) / 2];
+}
+
+/* A type of surfaces: its name, the power of the coefficient PARM 1, and by how much that grows with the number; a
+ * parameter before that, of a toric surface; the last parameter. */
+typedef struct zmx_kind {
+    const char *word;
+    int power, step, before, last;
+} zmx_kind;
+
+static zmx_kind zmx_kind_of(const lens_surface *s)
+{
+    bool odd = false, any = false;
+    for (int n = 1; n <= 20; n++) {
+        const double a = n % 2 == 0 || n < 16 ? term_of(s, n) : 0.0;
+        any |= a != 0.0, odd |= a != 0.0 && n % 2 == 1;
+    }
+    if (s->form == SIDE_BICONIC)
+        return (zmx_kind){"BICONICX", 0, 0, 2, 2};
+    if (s->form == SIDE_TORIC)
+        return (zmx_kind){"TOROIDAL", 2, 2, 1, 8};
+    return odd   ? (zmx_kind){"ODDASPHE", 1, 1, 0, 8}
+           : any ? (zmx_kind){"EVENASPH", 2, 2, 0, 10}
+                 : (zmx_kind){"STANDARD", 2, 2, 0, 0};
+}
+
+/* Whether all coefficients are among the parameters. */
+static bool zmx_holds(const lens_surface *s)
+{
+    const zmx_kind kind = zmx_kind_of(s);
+    for (int n = 1; n <= 20; n++) {
+        if ((n % 2 == 1 && n > 15) || term_of(s, n) == 0.0)
+            continue;
+        const int at = kind.step ? (n - kind.power) / kind.step + 1 + kind.before : 0;
+        if (!kind.step || (n - kind.power) % kind.step != 0 || at <= kind.before || at > kind.last)
+            return false;
+    }
+    return true;
+}
+
+static void put_parameters(const lens_surface *s, FILE *out)
+{
+    const zmx_kind kind = zmx_kind_of(s);
+    for (int i = 1; i <= kind.last; i++) {
+        const double value = i > kind.before ? term_of(s, kind.power + (i - 1 - kind.before) * kind.step)
+                             : i == 1        ? s->radius_x
+                                             : s->conic_x;
+        if (value == 0.0)
+            continue;
+        fprintf(out, "  PARM %d", i);
+        put_number(out, " ", value);
+        fputc('\n', out);
+    }
+}
+
 /* Before and after a fold mirror, whose own thickness is then 0. */
 static void put_zmx_break(size_t number, const lens_surface *s, double thickness, FILE *out)
 {
@@ -192,13 +272,10 @@ static void put_curvature(double radius, FILE *out)
 
 static void put_zmx_surface(const lens_prescription *p, size_t number, const lens_surface *s, bool stop, FILE *out)
 {
-    bool even = false;
-    for (int k = 0; k < LENS_EVEN_TERMS; k++)
-        even |= s->even[k] != 0.0;
     fprintf(out, "SURF %zu\n", number);
     if (stop)
         fputs("  STOP\n", out);
-    fprintf(out, "  TYPE %s\n", even ? "EVENASPH" : "STANDARD");
+    fprintf(out, "  TYPE %s\n", zmx_kind_of(s).word);
     if (s->name[0]) {
         fputs("  COMM ", out);
         put_text(out, s->name, true);
@@ -206,12 +283,7 @@ static void put_zmx_surface(const lens_prescription *p, size_t number, const len
     }
     put_curvature(s->radius, out);
     lens_zmx_put_tail(p, s->line > 0 ? s->line : LONG_MAX, "CURV", " 0 0 0 0 \"\"", out);
-    for (int k = 0; k < LENS_EVEN_TERMS; k++)
-        if (s->even[k] != 0.0) {
-            fprintf(out, "  PARM %d", k + 2);
-            put_number(out, " ", s->even[k]);
-            fputc('\n', out);
-        }
+    put_parameters(s, out);
     if (isinf(s->thickness))
         fputs("  DISZ INFINITY\n", out);
     else
@@ -278,6 +350,10 @@ static status write_zmx(const lens_prescription *p, FILE *out, diagnostic *why)
     if (!unit)
         return diagnose(why, STATUS_BAD_INPUT, "set render.unit_m to 0.001, 0.01, 0.0254 or 1, or write a .csv file",
                         "a .zmx file has no unit of %g mm", p->unit_mm);
+    for (size_t i = 0; i < p->count; i++)
+        if (!zmx_holds(&p->surface[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "write a .csv file",
+                            "surface %zu has coefficients that a .zmx file cannot hold", i + 1);
     fputs("VERS", out);
     lens_zmx_put_tail(p, 0, "VERS", " 181005 0 0", out);
     fputs("MODE SEQ\nNAME ", out);

@@ -1,6 +1,6 @@
 /* Reads sequential lens files of Zemax (lens_prescription.h). The format, line by line, is a keyword and its values;
- * lines of a surface follow its line SURF. Surface 0 is the object, the last one the image. Zemax, OpticStudio User
- * Guide. */
+ * lines of a surface follow its line SURF, its TYPE before its PARM. Surface 0 is the object, the last one the image.
+ * Zemax, OpticStudio User Guide. */
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/lens/lens_reader.h"
@@ -16,6 +16,7 @@ typedef struct zmx_reader {
     bool in_surface;
     bool has_distance, has_aperture; /* of the surface: DISZ; CLAP or FLAP, before which DIAM stands back */
     bool has_stop_size;              /* of the system: ENPD, FNUM, OBNA or FLOA */
+    int type;                        /* of the surface: types[] */
     int field_type;
     double x[LENS_LIST_MAX], y[LENS_LIST_MAX];
     int fields, waves; /* as FTYP says; 0: by the values */
@@ -36,21 +37,47 @@ static status read_length(const lens_reader *r, const char *what, double *out)
     return r->count > 1 && strncasecmp(r->word[1], "INF", 3) == 0 ? STATUS_OK : lens_number(r, 1, what, out);
 }
 
+/* Types of surfaces, and what their last parameter that is read means. */
+typedef enum zmx_type { ZMX_EVEN, ZMX_ODD, ZMX_BICONIC, ZMX_TOROIDAL, ZMX_STANDARD } zmx_type;
+static const struct {
+    const char *word, *remedy;
+    int last;
+    side_form form;
+} types[] = {{"EVENASPH", "use PARM 1 to 10, the coefficients of r^2 to r^20", 10, SIDE_ROUND},
+             {"ODDASPHE", "use PARM 1 to 8, the coefficients of r to r^8", 8, SIDE_ROUND},
+             {"BICONICX", "use PARM 1 and 2, the radius and the conic constant along x", 2, SIDE_BICONIC},
+             {"TOROIDAL", "use PARM 1, the radius of rotation, to 8, the coefficient of y^14", 8, SIDE_TORIC},
+             {"STANDARD", "use PARM 1 to 10, the coefficients of r^2 to r^20", 10, SIDE_ROUND}};
+
 static status read_type(zmx_reader *z)
 {
     const lens_reader *r = z->r;
     const char *word = r->count > 1 ? r->word[1] : "";
-    if (strcasecmp(word, "STANDARD") == 0 || strcasecmp(word, "EVENASPH") == 0)
-        return STATUS_OK;
+    for (int i = 0; i < (int)(sizeof types / sizeof *types); i++)
+        if (strcasecmp(word, types[i].word) == 0) {
+            z->type = i, surface_of(z)->form = types[i].form;
+            return STATUS_OK;
+        }
     if (strcasecmp(word, "COORDBRK") == 0) {
         z->breaks[r->p->count - 1].given = true;
         return STATUS_OK;
     }
-    return lens_wrong(r, 1, "use surfaces STANDARD, EVENASPH and COORDBRK; in a scene file, solids can be of any shape",
+    return lens_wrong(r, 1,
+                      "use surfaces STANDARD, EVENASPH, ODDASPHE, BICONICX, TOROIDAL and COORDBRK; in a scene file, "
+                      "solids can be of any shape",
                       "surface %zu is of type %.20s, which is not supported", r->p->count - 1, word);
 }
 
-/* PARM 1 is the coefficient of r^2, PARM 2 of r^4 and so on. */
+/* The coefficient of r^n, n from 1. */
+static void set_term(lens_surface *s, int n, double value)
+{
+    if (n % 2 == 0 && n > 2)
+        s->even[n / 2 - 2] = value;
+    else
+        s->odd[n < 3 ? n - 1 : (n + 1) / 2] = value;
+}
+
+/* PARM n is the coefficient of r^(2 n) of an even asphere, and of r^n of an odd one. For others: types[]. */
 static status read_parameter(zmx_reader *z)
 {
     const lens_reader *r = z->r;
@@ -66,16 +93,22 @@ static status read_parameter(zmx_reader *z)
         b->number[(int)number - 1] = value;
         return STATUS_OK;
     }
-    const int i = (int)number - 2;
-    if (number == 1.0)
-        return lens_wrong(r, 2,
-                          "fold it into the curvature, 1 / radius = CURV + 2 PARM, if the surface is otherwise "
-                          "a paraboloid or flat",
-                          "the coefficient of r^2 is not supported");
-    if (!(number >= 2.0) || number > LENS_EVEN_TERMS + 1)
-        return lens_wrong(r, 1, "use PARM 2 to 10, the coefficients of r^4 to r^20", "parameter %g is not supported",
-                          number);
-    surface_of(z)->even[i] = value;
+    if (!(number >= 1.0) || number > types[z->type].last)
+        return lens_wrong(r, 1, types[z->type].remedy, "parameter %g is not supported", number);
+    const int n = (int)number;
+    lens_surface *s = surface_of(z);
+    switch ((zmx_type)z->type) {
+    case ZMX_ODD: set_term(s, n, value); break;
+    case ZMX_BICONIC: *(n == 1 ? &s->radius_x : &s->conic_x) = value; break;
+    case ZMX_TOROIDAL:
+        if (n == 1)
+            s->radius_x = value;
+        else
+            set_term(s, 2 * (n - 1), value);
+        break;
+    case ZMX_EVEN:
+    case ZMX_STANDARD: set_term(s, 2 * n, value); break;
+    }
     return STATUS_OK;
 }
 
@@ -357,7 +390,7 @@ static status read_line(zmx_reader *z, char *line)
     lens_divide(r, line, false);
     status code = STATUS_OK;
     if (r->count > 0 && strcmp(r->word[0], "SURF") == 0) {
-        z->in_surface = lens_append(r, &code) != NULL;
+        z->in_surface = lens_append(r, &code) != NULL, z->type = ZMX_STANDARD;
         z->has_distance = z->has_aperture = false;
     } else if (r->count > 0) {
         code = read_words(z, indented, whole);

@@ -132,7 +132,8 @@ static status wrong_shape(const scene *s, const param_place *at, const path_word
 {
     const char *shape = shape_name(s->solids[at->index].shape.kind), *words[WORDS_MAX];
     size_t count = row_words(s, at, PARAM_SOLID, words, 0);
-    char prefix[40], remedy[400];
+    static const char others[] = ", and the parameters of a material";
+    char prefix[40], remedy[sizeof why->remedy];
     if (!at->row->by_shape && solid_follows(&s->solids[at->index])) {
         snprintf(remedy, sizeof remedy, "set %s.offset, or %s.%s", path->group, s->solids[at->index].follows,
                  path->name);
@@ -143,9 +144,9 @@ static status wrong_shape(const scene *s, const param_place *at, const path_word
         return diagnose(why, STATUS_BAD_INPUT, "set its position, or first the solid that it follows",
                         "%s follows no solid, so it has no offset", path->group);
     snprintf(prefix, sizeof prefix, "a %s has ", shape);
-    suggest_list(prefix, words, count, remedy, sizeof remedy);
+    suggest_list(prefix, words, count, remedy, sizeof remedy - sizeof others);
     size_t used = strlen(remedy);
-    snprintf(remedy + used, sizeof remedy - used, ", and the parameters of a material");
+    snprintf(remedy + used, sizeof remedy - used, "%s", others);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is a %s, which has no %s", path->group, shape, path->name);
 }
 

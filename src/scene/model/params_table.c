@@ -45,6 +45,7 @@ static const char *const light_words[] = {"point", "cone", "soft_cone", "disc", 
 static const char *const lamp_words[] = {"color", "black_body", "sodium", "mercury", "hydrogen", "line", "data", NULL};
 static const char *const profile_words[] = {"uniform", "gaussian", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
+static const char *const side_form_words[] = {"round", "biconic", "toric", NULL};
 static const char *const pattern_words[] = {"spiral", "rings", "square", "sobol", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "image", "rain", "cie", NULL};
 
@@ -123,6 +124,13 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
             " at a distance r from the axis, added to its "                           \
             "sphere or conic (an even asphere)",                                      \
             NULL, SHAPE(shape.even_##side[at])                                        \
+    }
+#define ODD(side, power, at, unit)                                                         \
+    {                                                                                      \
+        PARAM_SOLID, "a" #power "_" #side, PARAM_REAL, unit, -1e30, 1e30, false, "0",      \
+            "lens: coefficient of r^" #power " in the sag of side " #side ", as a4_" #side \
+            " (an odd asphere; 1 alone: an axicon's cone)",                                \
+            NULL, SHAPE(shape.odd_##side[at])                                              \
     }
 #define LENGTH(field, fallback, meaning) \
     ROW(PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, SHAPE(shape.field))
@@ -674,6 +682,41 @@ static const param table[] = {
     ASPHERIC(2, 16, 6, "1/scene units^15"),
     ASPHERIC(2, 18, 7, "1/scene units^17"),
     ASPHERIC(2, 20, 8, "1/scene units^19"),
+    ODD(1, 1, 0, ""),
+    ODD(1, 2, 1, "1/scene units^1"),
+    ODD(1, 3, 2, "1/scene units^2"),
+    ODD(1, 5, 3, "1/scene units^4"),
+    ODD(1, 7, 4, "1/scene units^6"),
+    ODD(1, 9, 5, "1/scene units^8"),
+    ODD(1, 11, 6, "1/scene units^10"),
+    ODD(1, 13, 7, "1/scene units^12"),
+    ODD(1, 15, 8, "1/scene units^14"),
+    ODD(2, 1, 0, ""),
+    ODD(2, 2, 1, "1/scene units^1"),
+    ODD(2, 3, 2, "1/scene units^2"),
+    ODD(2, 5, 3, "1/scene units^4"),
+    ODD(2, 7, 4, "1/scene units^6"),
+    ODD(2, 9, 5, "1/scene units^8"),
+    ODD(2, 11, 6, "1/scene units^10"),
+    ODD(2, 13, 7, "1/scene units^12"),
+    ODD(2, 15, 8, "1/scene units^14"),
+    {PARAM_SOLID, "form_1", PARAM_CHOICE, "", 0, 0, false, "round",
+     "lens: form of side 1: round; biconic, with another radius and conic constant along x; or toric, the curve of "
+     "radius_1 along z, with its coefficients, turned about a line (a cylinder, if radius_1_x is 0)",
+     side_form_words, SHAPE(shape.form_1)},
+    {PARAM_SOLID, "form_2", PARAM_CHOICE, "", 0, 0, false, "round", "lens: form of side 2, as form_1", side_form_words,
+     SHAPE(shape.form_2)},
+    {PARAM_SOLID, "radius_1_x", PARAM_REAL, "scene units", -FAR, FAR, false, "0",
+     "lens with a form_1 of biconic or toric: radius of curvature of side 1 along the solid's own x, of which radius_1 "
+     "is then that along z; 0: flat",
+     NULL, SHAPE(shape.radius_1_x)},
+    {PARAM_SOLID, "radius_2_x", PARAM_REAL, "scene units", -FAR, FAR, false, "0",
+     "lens with a form_2 of biconic or toric: radius of side 2 along x, as radius_1_x", NULL, SHAPE(shape.radius_2_x)},
+    {PARAM_SOLID, "conic_1_x", PARAM_REAL, "", -1000, 1000, false, "0",
+     "lens with a form_1 of biconic: conic constant of side 1 along x, of which conic_1 is then that along z", NULL,
+     SHAPE(shape.conic_1_x)},
+    {PARAM_SOLID, "conic_2_x", PARAM_REAL, "", -1000, 1000, false, "0",
+     "lens with a form_2 of biconic: conic constant of side 2 along x, as conic_1_x", NULL, SHAPE(shape.conic_2_x)},
     {PARAM_SOLID, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1", "edge lengths along x, y and z", NULL,
      SHAPE(shape.size)},
     {PARAM_SOLID, "mesh", PARAM_WORD, "", 0, 0, false, "", "name of a mesh", NULL, SHAPE(mesh), .names = "mesh"},
