@@ -41,6 +41,7 @@ typedef struct solid_shape {
     int64_t sides;
     double radius_1, radius_2, conic_1, conic_2, thickness, diameter; /* lens */
     double diameter_1, diameter_2;                                    /* of its sides; 0: the rim's */
+    double chamfer_1, chamfer_2; /* radial lengths of the bevels between its sides and the rim; 0: none */
     double even_1[9], even_2[9]; /* of its sides' sag: coefficients of the 4th, 6th, ... 20th power of the radius */
     double odd_1[9], odd_2[9];   /* of the powers 1, 2, 3, 5, 7, ... 15 */
     int64_t form_1, form_2;      /* side_form (primitives/asphere.h) */

@@ -170,13 +170,13 @@ static void put_prism(const solid_shape *s, double e, FILE *out)
     fputs(" }", out);
 }
 
-/* Whether the side is a conic up to the rim, with all of the lens on one side of an ellipsoid's centre, or on one sheet
+/* Whether the side is a conic up to the rim, without a bevel, with all of the lens on one side of an ellipsoid's centre, or on one sheet
  * of a hyperboloid. */
 static bool is_conic(const solid_shape *s, int k)
 {
     const lens_profile side = lens_profile_of(s, k);
     const double far = fmax(fabs(lens_highest_of(s, 1) - side.vertex), fabs(lens_lowest_of(s, 0) - side.vertex));
-    return !side.aspheric && !lens_has_ring(&side) &&
+    return !side.aspheric && !lens_has_ring(&side) && lens_chamfer(s, k) == 0.0 &&
            (lens_is_flat(&side) || far * fabs(side.e.curvature * (1.0 + side.conic)) < 1.0);
 }
 

@@ -558,7 +558,7 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
         law_solid *one = &w.solid[i];
         one->gold = false;
         one->film_nm = one->extraordinary_ior = one->shape.capillary_length = 0.0;
-        one->shape.diameter_1 = one->shape.diameter_2 = 0.0;
+        one->shape.diameter_1 = one->shape.diameter_2 = one->shape.chamfer_1 = one->shape.chamfer_2 = 0.0;
         if (!one->mesh)
             one->shape.scale = vec3_make(1.0, 1.0, 1.0);
         for (int k = 0; k < 9; k++)

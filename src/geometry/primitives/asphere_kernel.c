@@ -1,6 +1,7 @@
-/* A lens with a side that is an asphere, biconic or toric (asphere.h), or is smaller than the rim: x^2 + z^2 <=
- * radius^2 between two sides, each of which is such a surface or a conic up to a clear radius, and a level ring beyond
- * it. Faces: 0 rim, 1 the side at 0, 2 the side at top, 3 and 4 the rings around them.
+/* A lens with a side that is an asphere, biconic or toric (asphere.h), is smaller than the rim, or ends in a bevel: x^2 +
+ * z^2 <= radius^2 between two sides, each of which is such a surface or a conic up to a clear radius, and a level ring
+ * beyond it; within the half cones of the bevels. Faces: 0 rim, 1 the side at 0, 2 the side at top, 3 and 4 the rings
+ * around them, 5 and 6 the bevels.
  *
  * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
  * derivative is bounded by asphere_bend or asphere_curve. On an interval of half width h about m with |f''| <= K:
@@ -9,8 +10,8 @@
  *
  * An interval for which neither holds is halved, until f is within rounding of its tangent. So the signs at the ends of
  * the intervals show all crossings (as Moore's interval Newton method isolates roots: Moore, Kearfott and Cloud,
- * Introduction to Interval Analysis, ch. 8). A line far from tangency needs one interval. The shape has at most three
- * chords (shapes/lens.c).
+ * Introduction to Interval Analysis, ch. 8). A line far from tangency needs one interval. The most chords follow from
+ * how the sides turn (shapes/lens_profile.c): there is a table of functions for each number of them.
  *
  * The cone a1 rho is convex along a line: the change of its slope is added to K h, and that times h to K h^2 / 2.
  *
@@ -18,7 +19,7 @@
  * do not cancel, and next to 0 it has the sign of the derivative. */
 #include "geometry/primitives/lens_side.h"
 
-enum { ASPHERE_CHANGES = 8, ASPHERE_DEPTH = 64, ASPHERE_WORK = 4096, ASPHERE_CHORDS = 3 };
+enum { ASPHERE_CHANGES = 10, ASPHERE_DEPTH = 64, ASPHERE_WORK = 4096, FACES_OF_LENS = 7 };
 
 /* A line, with t measured from its base: its point nearest to the side's vertex or, if it starts on the side, its
  * start. Heights are relative to the vertex. */
@@ -270,6 +271,26 @@ static asphere_part part_of_side(const primitive *p, int k, local_ray r, interva
     return part;
 }
 
+/* The interval of a line in the half cones of the bevels. at: the face that it starts on. */
+static interval within_bevels(const primitive *p, local_ray r, int64_t at)
+{
+    interval within = {-HUGE_VAL, HUGE_VAL};
+    for (int k = 0; k < 2; k++) {
+        if (!lens_has_bevel(p, k))
+            continue;
+        const double up = bevel_slope(k);
+        const quadric_roots cone = half_cone_cross(-up * lens_apex(p, k), up, 0.5 * p->top, r, mask_same(at, 5 + k));
+        within = interval_both(within, interval_of_quadric(cone));
+    }
+    return within;
+}
+
+/* The most chords of a line in it. */
+static int most_chords(const primitive *p)
+{
+    return p->rule->ISA_BASELINE->intervals;
+}
+
 /* The chords of a line; returns their number. at: the face that it starts on. */
 static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chords[CHORDS_MAX])
 {
@@ -280,11 +301,12 @@ static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chor
     asphere_part part[2];
     for (int k = 0; k < 2; k++)
         part[k] = part_of_side(p, k, r, rim, at);
+    const interval body = interval_both(rim, within_bevels(p, r, at));
     int count = 0;
     for (int i = 0; i < part[0].count; i++)
         for (int k = 0; k < part[1].count; k++) {
-            const interval both = interval_both(rim, interval_both(part[0].list[i], part[1].list[k]));
-            if (both.in < both.out && count < ASPHERE_CHORDS)
+            const interval both = interval_both(body, interval_both(part[0].list[i], part[1].list[k]));
+            if (both.in < both.out && count < most_chords(p))
                 chords[count++] = both;
         }
     return count;
@@ -300,8 +322,8 @@ static void one(const primitive *p, const ray_batch *rays, int i, bool inside, c
     const int count = cross_lens(p, r, at, chords);
     const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
     const crossings_of_one ahead =
-        crossings_of_chords(chords, count, at >= 0 && at <= 4, inside, 0x1p-20 * p->radius / length);
-    intervals_of_crossings(&ahead, inside, found);
+        crossings_of_chords(chords, count, at >= 0 && at < FACES_OF_LENS, inside, 0x1p-20 * p->radius / length);
+    intervals_of_crossings(&ahead, inside, most_chords(p), found);
 }
 
 /* Ray by ray, as few rays hit a lens. */
@@ -310,7 +332,7 @@ static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch
     for (int i = 0; i < rays->count; i++) {
         interval found[CHORDS_MAX];
         one(p, rays, i, rays->inside[i] >> bit & 1, s, found);
-        for (int k = 0; k < ASPHERE_CHORDS; k++)
+        for (int k = 0; k < p->rows; k++)
             s->in[bit + k][i] = found[k].in, s->out[bit + k][i] = found[k].out;
     }
 }
@@ -329,13 +351,23 @@ static side_point point_on_asphere(const primitive *p, int k, vec3 q)
                         .apart = magnitude(level) * inverse};
 }
 
-/* A side counts within its clear radius, its ring beyond it: elsewhere they are `outside` farther than they are. */
+/* A side counts within its clear radius, its ring beyond it up to the bevel: elsewhere they are `outside` farther than
+ * they are. */
 static side_point point_on_ring(const primitive *p, int k, vec3 q, double from_axis, double outside)
 {
     const double y = lens_clear(p, k) < HUGE_VAL ? lens_ring(p, k) : HUGE_VAL;
     return (side_point){.point = vec3_make(q.x, y, q.z),
                         .normal = vec3_make(0.0, k == 0 ? -1.0 : 1.0, 0.0),
                         .apart = magnitude(q.y - y) + (from_axis < lens_clear(p, k) ? outside : 0.0)};
+}
+
+static side_point point_on_bevel(const primitive *p, int k, vec3 q, double from_axis, double outside)
+{
+    const double up = bevel_slope(k), half = 0x1.6a09e667f3bcdp-1; /* sqrt(1/2) */
+    const double off = 0.5 * (from_axis - up * (q.y - lens_apex(p, k))), x = q.x / from_axis, z = q.z / from_axis;
+    return (side_point){.point = vec3_make(x * (from_axis - off), q.y + up * off, z * (from_axis - off)),
+                        .normal = vec3_make(x * half, -up * half, z * half),
+                        .apart = magnitude(off) / half + (from_axis < lens_bevel(p, k) ? outside : 0.0)};
 }
 
 static side_point point_on(const primitive *p, int k, vec3 q)
@@ -356,7 +388,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     (void)general, (void)at;
     const double from_axis = sqrt(q.x * q.x + q.z * q.z), along = leaving ? 1.0 : -1.0;
     const double x = q.x / from_axis, z = q.z / from_axis, outside = 0x1p-30 * p->radius;
-    side_point faces[5] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
+    side_point faces[FACES_OF_LENS] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
                             .normal = vec3_make(x, 0.0, z),
                             .apart = magnitude(from_axis - p->radius)},
                            point_on(p, 0, q),
@@ -366,7 +398,12 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     for (int k = 0; k < 2 && p->details; k++) {
         faces[count++] = point_on_ring(p, k, q, from_axis, outside);
         faces[1 + k].apart += from_axis > lens_clear(p, k) ? outside : 0.0;
+        for (int j = 0; j < 2; j++) /* the side and its ring */
+            faces[1 + k + 2 * j].apart += from_axis > lens_bevel(p, k) ? outside : 0.0;
     }
+    for (int k = 0; k < 2; k++, count++)
+        faces[count] = lens_has_bevel(p, k) ? point_on_bevel(p, k, q, from_axis, outside)
+                                            : (side_point){.apart = HUGE_VAL};
     for (int k = 0; k < count; k++) {
         const double turned = vec3_dot(vec3_make(r.dx, r.dy, r.dz), faces[k].normal);
         const double cost = faces[k].apart + (turned * along > 0.0 ? 0.0 : outside);
@@ -387,5 +424,10 @@ static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
     return cross_lens(p, r, FACE_NONE, found);
 }
 
-const primitive_functions KERNEL(asphere_functions) = {ASPHERE_CHORDS, rows,   one,        points,
-                                                       lens_contains,  chords, lens_flats, lens_mapping};
+/* By the most chords of a line. */
+#define ASPHERE_FUNCTIONS(name, most) \
+    const primitive_functions KERNEL(name) = {most, rows, one, points, lens_contains, chords, lens_flats, lens_mapping}
+ASPHERE_FUNCTIONS(asphere_functions, 3);
+ASPHERE_FUNCTIONS(asphere_5_functions, 5);
+ASPHERE_FUNCTIONS(asphere_7_functions, 7);
+ASPHERE_FUNCTIONS(asphere_9_functions, 9);

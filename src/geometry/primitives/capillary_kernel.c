@@ -164,7 +164,7 @@ static void one(const primitive *p, const ray_batch *rays, int i, bool inside, c
     const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
     const crossings_of_one ahead =
         crossings_of_chords(chords, count, at >= 0 && at <= 3, inside, 0x1p-20 * p->radius / length);
-    intervals_of_crossings(&ahead, inside, found);
+    intervals_of_crossings(&ahead, inside, CAPILLARY_CHORDS, found);
 }
 
 static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)

@@ -11,31 +11,9 @@ ALWAYS_INLINE double cone_slope(const primitive *p)
     return (p->second_radius - p->radius) / p->top;
 }
 
-/* The interval, in the ray's t, in which a ray is in the infinite half cone with w > 0. The discriminant is computed by
- * Lagrange's identity for x^2 + z^2 - w^2. The quadratic is solved from the line's point nearest to the solid's centre;
- * for a ray that starts on the side, from its start, where c = 0. */
 ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t starts_on)
 {
-    const double slope = cone_slope(p), dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;
-    double up = r.y - 0.5 * p->top;
-    double nearest = -(r.x * r.dx + up * r.dy + r.z * r.dz) / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
-    double from = blend(starts_on, 0.0, nearest);
-    double x = r.x + from * dx, z = r.z + from * r.dz, w = p->radius + slope * (r.y + from * r.dy);
-    double a = dx * dx + r.dz * r.dz - dw * dw, b = x * dx + z * r.dz - w * dw;
-    double c = blend(starts_on, 0.0, x * x + z * z - w * w);
-    double mx = x * dw - w * dx, mz = z * dw - w * r.dz, mw = x * r.dz - z * dx;
-    double discriminant = blend(starts_on, b * b, mx * mx + mz * mz - mw * mw);
-    double root = sqrt(greater(discriminant, 0.0));
-    double q = -(b + blend(mask_less(b, 0.0), -root, root));
-    double far = q * inverse_of_component(a), close = c * inverse_of_component(q);
-    double first = lesser(far, close), second = greater(far, close);
-    int64_t steep = mask_less(a, 0.0), opens = mask_less(0.0, dw);
-    int64_t upper = mask_less(0.0, w - dw * (b * inverse_of_component(a))); /* halfway between the roots */
-    quadric_roots s;
-    s.in = from + blend(steep, blend(opens, second, -HUGE_VAL), first);
-    s.out = from + blend(steep, blend(opens, HUGE_VAL, first), second);
-    s.hit = steep | (upper & (starts_on | mask_less(0.0, discriminant)));
-    return s;
+    return half_cone_cross(p->radius, cone_slope(p), 0.5 * p->top, r, starts_on);
 }
 
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)

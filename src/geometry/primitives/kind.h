@@ -23,6 +23,33 @@ static inline interval interval_of_quadric(quadric_roots q)
     return q.hit ? (interval){q.in, q.out} : (interval){HUGE_VAL, -HUGE_VAL};
 }
 
+/* The interval, in the ray's t, in which a ray is in the infinite half cone x^2 + z^2 <= w^2, w = radius + slope y > 0.
+ * The discriminant is computed by Lagrange's identity for x^2 + z^2 - w^2. The quadratic is solved from the line's point
+ * nearest to the axis's point at `middle`; for a ray that starts on the cone, from its start, where c = 0. */
+ALWAYS_INLINE quadric_roots half_cone_cross(double radius, double slope, double middle, local_ray r, int64_t starts_on)
+{
+    const double dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;
+    double up = r.y - middle;
+    double nearest = -(r.x * r.dx + up * r.dy + r.z * r.dz) / (r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+    double from = blend(starts_on, 0.0, nearest);
+    double x = r.x + from * dx, z = r.z + from * r.dz, w = radius + slope * (r.y + from * r.dy);
+    double a = dx * dx + r.dz * r.dz - dw * dw, b = x * dx + z * r.dz - w * dw;
+    double c = blend(starts_on, 0.0, x * x + z * z - w * w);
+    double mx = x * dw - w * dx, mz = z * dw - w * r.dz, mw = x * r.dz - z * dx;
+    double discriminant = blend(starts_on, b * b, mx * mx + mz * mz - mw * mw);
+    double root = sqrt(greater(discriminant, 0.0));
+    double q = -(b + blend(mask_less(b, 0.0), -root, root));
+    double far = q * inverse_of_component(a), close = c * inverse_of_component(q);
+    double first = lesser(far, close), second = greater(far, close);
+    int64_t steep = mask_less(a, 0.0), opens = mask_less(0.0, dw);
+    int64_t upper = mask_less(0.0, w - dw * (b * inverse_of_component(a))); /* halfway between the roots */
+    quadric_roots s;
+    s.in = from + blend(steep, blend(opens, second, -HUGE_VAL), first);
+    s.out = from + blend(steep, blend(opens, HUGE_VAL, first), second);
+    s.hit = steep | (upper & (starts_on | mask_less(0.0, discriminant)));
+    return s;
+}
+
 static inline interval interval_of_slab(double y, double dy, double low, double high)
 {
     const slab_roots s = slab_cross(y, inverse_of_component(dy), low, high, 0, 0);
@@ -137,7 +164,8 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     int first = 0;
     while (first < line->count && line->t[first] <= 0.0)
         first++;
-    crossings_of_one ahead = {0, {0.0}};
+    crossings_of_one ahead;
+    ahead.count = 0;
     if ((line->count - first) % 2 != (int)inside) {
         const double behind = first > 0 ? -line->t[first - 1] : HUGE_VAL;
         const double next = first < line->count ? line->t[first] : HUGE_VAL;
@@ -156,7 +184,8 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
 static inline crossings_of_one crossings_of_chords(const interval *chords, int count, bool starts_on, bool inside,
                                                    double grazing)
 {
-    crossings_of_one line = {0, {0.0}};
+    crossings_of_one line;
+    line.count = 0;
     bool is_start = starts_on; /* the crossing at the ray's start is left out */
     for (int k = 0; k < 2 * count; k++) {
         const double t = k % 2 ? chords[k / 2].out : chords[k / 2].in;
@@ -168,11 +197,11 @@ static inline crossings_of_one crossings_of_chords(const interval *chords, int c
     return crossings_ahead(&line, starts_on, inside, grazing);
 }
 
-/* The intervals between the crossings ahead. */
-static inline void intervals_of_crossings(const crossings_of_one *ahead, bool inside, interval found[CHORDS_MAX])
+/* The intervals between the crossings ahead, of a kind with that many rows. */
+static inline void intervals_of_crossings(const crossings_of_one *ahead, bool inside, int rows, interval *found)
 {
     int next = 0;
-    for (int k = 0; k < CHORDS_MAX; k++) {
+    for (int k = 0; k < rows; k++) {
         found[k].in = k == 0 && inside ? -HUGE_VAL : next < ahead->count ? ahead->t[next++] : HUGE_VAL;
         found[k].out = next < ahead->count ? ahead->t[next++] : -HUGE_VAL;
     }

@@ -46,10 +46,12 @@ DEFINE_SPANS(p->turned, span)
 
 /* --- with concave sides --- */
 
+enum { LENS_CHORDS = 3 }; /* the most, of a biconcave lens */
+
 /* The chords of a line; returns their number. */
-static int lens_chords(const lens_side side[2], const lens_parts *l, interval chords[CHORDS_MAX])
+static int lens_chords(const lens_side side[2], const lens_parts *l, interval chords[LENS_CHORDS])
 {
-    interval list[CHORDS_MAX + 1] = {l->rim};
+    interval list[LENS_CHORDS + 1] = {l->rim};
     for (int k = 0; k < 2; k++)
         if (!side[k].concave)
             list[0] = interval_both(list[0], l->side[k]);
@@ -64,15 +66,15 @@ static int lens_chords(const lens_side side[2], const lens_parts *l, interval ch
 
 /* The intervals of ray i ahead, from those of its line. */
 static void lens_ahead(const primitive *p, const lens_side side[2], const lens_parts *l, const ray_batch *rays, int i,
-                       bool inside, interval found[CHORDS_MAX])
+                       bool inside, interval found[LENS_CHORDS])
 {
     const bool starts_on = starts_on_lens(rays->start[i] - p->first_face);
-    interval chords[CHORDS_MAX];
+    interval chords[LENS_CHORDS];
     const int count = lens_chords(side, l, chords);
     const double length2 = rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i];
     const crossings_of_one ahead =
         crossings_of_chords(chords, count, starts_on, inside, 0x1p-20 * p->radius / sqrt(length2));
-    intervals_of_crossings(&ahead, inside, found);
+    intervals_of_crossings(&ahead, inside, LENS_CHORDS, found);
 }
 
 static void concave_one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s,
@@ -102,7 +104,7 @@ static void concave_rows(const primitive *__restrict p, int bit, const ray_batch
     }
     for (int i = 0; i < rays->count; i++) {
         const lens_parts l = {{rim_in[i], rim_out[i]}, {{in_1[i], out_1[i]}, {in_2[i], out_2[i]}}};
-        interval found[CHORDS_MAX];
+        interval found[LENS_CHORDS];
         lens_ahead(p, side, &l, rays, i, rays->inside[i] >> bit & 1, found);
         for (int k = 0; k < p->rows; k++)
             s->in[bit + k][i] = found[k].in, s->out[bit + k][i] = found[k].out;
@@ -162,5 +164,5 @@ const primitive_functions KERNEL(lens_functions) = {1,      rows,       one,    
                                                     chords, lens_flats, lens_mapping};
 const primitive_functions KERNEL(meniscus_functions) = {2,      concave_rows, concave_one, points, lens_contains,
                                                         chords, lens_flats,   lens_mapping};
-const primitive_functions KERNEL(biconcave_functions) = {3,      concave_rows, concave_one, points, lens_contains,
+const primitive_functions KERNEL(biconcave_functions) = {LENS_CHORDS, concave_rows, concave_one, points, lens_contains,
                                                          chords, lens_flats,   lens_mapping};

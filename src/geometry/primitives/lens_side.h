@@ -1,6 +1,6 @@
 /* A side of a lens that is a conic of revolution, and common code of lenses with and without aspheric coefficients; for
- * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top, 3 and 4 the level rings around them. Pure; cannot
- * fail.
+ * kernels. Faces: 0 rim, 1 the side at y = 0, 2 the side at y = top, 3 and 4 the level rings around them, 5 and 6 the
+ * bevels. Pure; cannot fail.
  *
  * The conic's equation is c (x^2 + z^2 + (1 + k) u^2) - 2 u = 0, with u measured from its vertex towards its centre of
  * curvature; c = 0 is a flat side. It holds on both halves of an ellipsoid, and on both sheets of a hyperboloid; only
@@ -144,19 +144,50 @@ static inline double lens_ring(const primitive *p, int k)
     return lens_height(p, k, 0.0, HUGE_VAL);
 }
 
-static inline bool lens_contains(const primitive *p, vec3 q)
+/* --- bevels: the half cones rho <= w = up (y - apex) --- */
+
+static inline double bevel_slope(int k)
 {
-    return q.x * q.x + q.z * q.z <= p->radius * p->radius && q.y >= lens_height(p, 0, q.x, q.z) &&
-           q.y <= lens_height(p, 1, q.x, q.z);
+    return k == 0 ? 1.0 : -1.0;
 }
 
-/* The height at which the rim ends: the outermost one if it is not the same all around. */
+/* The radius where the bevel of side k begins, infinite without one. */
+static inline double lens_bevel(const primitive *p, int k)
+{
+    const lens_details *d = p->details;
+    return d ? d->bevel[k] : HUGE_VAL;
+}
+
+static inline bool lens_has_bevel(const primitive *p, int k)
+{
+    return lens_bevel(p, k) < HUGE_VAL;
+}
+
+static inline double lens_apex(const primitive *p, int k)
+{
+    const lens_details *d = p->details;
+    return d->apex[k];
+}
+
+static inline bool is_within_bevel(const primitive *p, int k, vec3 q)
+{
+    return !lens_has_bevel(p, k) ||
+           sqrt(q.x * q.x + q.z * q.z) <= bevel_slope(k) * (q.y - lens_apex(p, k));
+}
+
+static inline bool lens_contains(const primitive *p, vec3 q)
+{
+    return is_within_bevel(p, 0, q) && is_within_bevel(p, 1, q) && q.x * q.x + q.z * q.z <= p->radius * p->radius &&
+           q.y >= lens_height(p, 0, q.x, q.z) && q.y <= lens_height(p, 1, q.x, q.z);
+}
+
+/* The height at which the rim and its bevel end: the outermost one if it is not the same all around. */
 static inline double lens_rim_end(const primitive *p, int k)
 {
     const lens_details *d = p->details;
     if (d && d->form[k] != SIDE_ROUND)
         return k == 0 ? d->low[0] : p->top + d->high[1];
-    return lens_height(p, k, 0.0, p->radius);
+    return lens_height(p, k, 0.0, lesser(p->radius, lens_bevel(p, k)));
 }
 
 static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
@@ -172,12 +203,12 @@ static inline int lens_flats(const primitive *p, flat_face flat[FLATS_MAX])
     return count;
 }
 
-/* Texture coordinates. On the rim, the image goes once around, its middle in front; on the sides it is projected along
- * the axis. */
+/* Texture coordinates. On the rim and its bevels, the image goes once around, its middle in front; on the sides it is
+ * projected along the axis. */
 static inline surface_mapping lens_mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double r = p->radius, bottom = lens_rim_end(p, 0), top = lens_rim_end(p, 1);
-    if (face == 0)
+    if (face == 0 || face >= 5)
         return mapping_around(q.x, q.z, r, q.y - bottom, top - bottom, size);
     return mapping_flat(q.x + r, face == 1 || face == 3 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
 }

@@ -125,7 +125,9 @@ typedef struct interval {
     double in, out;
 } interval;
 
-enum { CHORDS_MAX = 3 }; /* intervals of a line inside a primitive: a line crosses a biconcave lens up to six times */
+/* Intervals of a line inside a primitive. A line crosses a biconcave lens up to six times, a lens whose sides turn
+ * between convex and concave more often; each kind has a bound of its own. */
+enum { CHORDS_MAX = 9 };
 
 /* A face with a constant local coordinate: axis 0 x, 1 y, 2 z. `outwards` is the direction away from the primitive: +1
  * or -1; 0 for a surface whose textures are looked up on the surface itself and not just inside it. */

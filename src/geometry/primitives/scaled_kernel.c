@@ -128,6 +128,11 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
 }
 
 /* By the number of intervals of a line in the primitive within. */
-const primitive_functions KERNEL(scaled_1_functions) = {1, rows, one, points, contains, chords, flats, mapping};
-const primitive_functions KERNEL(scaled_2_functions) = {2, rows, one, points, contains, chords, flats, mapping};
-const primitive_functions KERNEL(scaled_3_functions) = {3, rows, one, points, contains, chords, flats, mapping};
+#define SCALED_FUNCTIONS(most)                            \
+    const primitive_functions KERNEL(scaled_##most##_functions) = {most, rows, one, points, contains, chords, flats, mapping}
+SCALED_FUNCTIONS(1);
+SCALED_FUNCTIONS(2);
+SCALED_FUNCTIONS(3);
+SCALED_FUNCTIONS(5);
+SCALED_FUNCTIONS(7);
+SCALED_FUNCTIONS(9);

@@ -128,7 +128,8 @@ static local_ray moved(local_ray r, double t)
 /* The crossings of r's line with the torus, without the root of the face that r starts on. */
 static crossings_of_one torus_cross(const primitive *p, local_ray r, bool starts_on)
 {
-    crossings_of_one found = {0};
+    crossings_of_one found;
+    found.count = 0;
     const double R = p->radius, r2 = p->second_radius * p->second_radius;
     const vec3 d = vec3_make(r.dx, r.dy, r.dz);
     const double length2 = vec3_dot(d, d), middle = -vec3_dot(vec3_make(r.x, r.y, r.z), d) / length2;
@@ -172,7 +173,7 @@ static void one(const primitive *p, const ray_batch *rays, int i, bool inside, c
     const crossings_of_one line = torus_cross(p, r, starts_on);
     const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
     const crossings_of_one ahead = crossings_ahead(&line, starts_on, inside, 0x1p-20 * p->second_radius / length);
-    intervals_of_crossings(&ahead, inside, found);
+    intervals_of_crossings(&ahead, inside, TORUS_CHORDS, found);
 }
 
 /* Few rays hit a torus, so a vectorised loop over all rays would waste most of its work. */

@@ -341,7 +341,8 @@ void KERNEL(tree_changes)(const scene_geometry *g, const ray_batch *rays, int n,
 void KERNEL(tree_each_near)(const scene_geometry *g, const ray_batch *rays, int k, const ray_scratch *s, double t,
                             tree_found *found, void *context)
 {
-    const tree_search w = {.g = g, .rays = rays, .s = s, .column = k};
+    tree_search w; /* without a list, whose room is large */
+    w.g = g, w.rays = rays, w.s = s, w.column = k;
     each_between(&w, t - window(&w, t), t + window(&w, t), found, context);
 }
 

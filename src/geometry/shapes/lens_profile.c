@@ -36,10 +36,20 @@ static bool is_conic(const lens_profile *e)
     return !e->aspheric && !lens_has_ring(e);
 }
 
+double lens_seen_of(const solid_shape *s, int k)
+{
+    return fmin(lens_end(s, k), lens_profile_of(s, k).clear);
+}
+
 double lens_edge(const solid_shape *s, int k)
 {
     const lens_profile e = lens_profile_of(s, k);
-    return lens_height_at(&e, lens_rim(s));
+    return lens_height_at(&e, lens_end(s, k));
+}
+
+double lens_rim_edge(const solid_shape *s, int k)
+{
+    return lens_edge(s, k) + (k == 0 ? 1.0 : -1.0) * lens_chamfer(s, k);
 }
 
 double lens_gap_at(const solid_shape *s, double rho)
@@ -115,7 +125,7 @@ double lens_reach_of(const solid_shape *s, int k, double out, double up)
 {
     const lens_profile e = lens_profile_of(s, k);
     const profile_sum sum = {e, level_profile, -up, -out};
-    const double rho = least_within(&sum, lens_rim(s));
+    const double rho = least_within(&sum, lens_end(s, k));
     return rho * out + lens_height_at(&e, rho) * up;
 }
 
@@ -129,22 +139,24 @@ double lens_reach_of(const solid_shape *s, int k, double out, double up)
  *
  * If p and g have the same sign, so has h. Otherwise h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
  * dg/dq) / (2 g^2). Only B >= 0 counts; there p + 2 q g, half the second derivative along the meridian, has the sign of
- * g: the side has turned. If that happens in one interval, in only one of the cases p > 0 > g and p < 0 < g, and B
- * rises in it, then h has at most one zero on either side of the axis, and by Rolle's theorem the line crosses the side
- * at most four times. */
+ * g: the side may have turned. In each interval of q in which that is possible, with p > 0 > g or with p < 0 < g, h has at
+ * most as many zeros on either side of the axis as B has monotonic branches: one more than T = 3 g^2 - p dg/dq has
+ * changes of sign. T changes it at most once where dT/dq = 5 g dg/dq - p d^2g/dq^2 keeps its own. With n zeros the line
+ * crosses the side at most 2 n + 2 times, by Rolle's theorem. */
 
-enum { FORM_PIECES = 256 };
+enum { FORM_PIECES = 256, TURNS_MAX = LENS_THREE_TURNS - LENS_CONCAVE };
 
 /* The steepest slope of a side with coefficients, and its largest curvature in units of 1 / rim. */
 #define SLOPE_MOST 16.0
 #define BEND_MOST 0x1p14
 
-/* Coefficients, from the power 0 of q on, of the sums of a side's terms: of p, g, dg/dq, and of half the second
- * derivative along the meridian. For A_n rho^n with n = 4 + 2 i: (i + 2) q^(i + 1) in p, and n (n - 1) / 2 q^(i + 1) in
- * the last. */
+/* Coefficients, from the power 0 of q on, of the sums of a side's terms: of p, g, dg/dq, d^2g/dq^2, and of half the
+ * second derivative along the meridian. For A_n rho^n with n = 4 + 2 i: (i + 2) q^(i + 1) in p, and n (n - 1) / 2
+ * q^(i + 1) in the last. */
 typedef struct form_terms {
     int count;
-    double p[ASPHERE_TERMS + 1], g[ASPHERE_TERMS + 1], turn[ASPHERE_TERMS + 1], bend[ASPHERE_TERMS + 1];
+    double p[ASPHERE_TERMS + 1], g[ASPHERE_TERMS + 1], turn[ASPHERE_TERMS + 1], next[ASPHERE_TERMS + 1],
+        bend[ASPHERE_TERMS + 1];
 } form_terms;
 
 static form_terms form_terms_of(const even_asphere *e)
@@ -156,6 +168,8 @@ static form_terms form_terms_of(const even_asphere *e)
         s.g[i] = (i + 1.0) * s.p[i + 1];
         if (i > 0)
             s.turn[i - 1] = i * s.g[i];
+        if (i > 1)
+            s.next[i - 2] = (i - 1.0) * s.turn[i - 1];
         s.bend[i + 1] = 0.5 * n * (n - 1.0) * e->even[i];
     }
     return s;
@@ -239,36 +253,75 @@ static asphere_range sign_of(const even_asphere *e, int sum, double conic, int p
     return range_of(a, b, e->terms, shifted, from, to);
 }
 
-/* A lower bound of 3 g^2 - p dg/dq. */
-static double least_turning(const even_asphere *e, const form_terms *k, double from, double to)
+static asphere_range product(asphere_range a, asphere_range b)
+{
+    const double corner[4] = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
+    return (asphere_range){fmin(fmin(corner[0], corner[1]), fmin(corner[2], corner[3])),
+                           fmax(fmax(corner[0], corner[1]), fmax(corner[2], corner[3]))};
+}
+
+/* 1 or -1: the sum of both has that sign in its whole range; 0: unknown. */
+static int sign_of_sum(asphere_range a, double times, asphere_range b)
+{
+    return times * a.low - b.high >= 0.0 ? 1 : times * a.high - b.low <= 0.0 ? -1 : 0;
+}
+
+static asphere_range sum_range(const even_asphere *e, int sum, double conic_from, double conic_to, int count,
+                               const double *k, double from, double to)
+{
+    return e->odd_terms > 0 ? range_with_odd(e, sum, conic_from, conic_to, false, from, to)
+                            : range_of(conic_from, conic_to, count, k, from, to);
+}
+
+/* The signs of T and of dT/dq; 0: unknown. */
+typedef struct form_turning {
+    int sign, rise;
+} form_turning;
+
+static form_turning turning_of(const even_asphere *e, const form_terms *k, double from, double to)
 {
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;
-    const double c3 = 0.25 * e->stretch * c * c * c, c5 = 1.5 * e->stretch * c * c * c3;
-    const bool odd = e->odd_terms > 0;
-    const double ends[3][2] = {
-        {0.5 * c * a, 0.5 * c * b}, {c3 * a * a * a, c3 * b * b * b}, {c5 * a * a * a * a * a, c5 * b * b * b * b * b}};
-    const double *const terms[3] = {k->p, k->g, k->turn};
-    asphere_range of[3];
-    for (int i = 0; i < 3; i++)
-        of[i] = odd ? range_with_odd(e, i, ends[i][0], ends[i][1], false, from, to)
-                    : range_of(ends[i][0], ends[i][1], k->count, terms[i], from, to);
-    const asphere_range p = of[SUM_P], g = of[SUM_G], d = of[SUM_TURN];
-    const double least = g.low > 0.0 || g.high < 0.0 ? fmin(fabs(g.low), fabs(g.high)) : 0.0;
-    return 3.0 * least * least - fmax(fmax(p.low * d.low, p.low * d.high), fmax(p.high * d.low, p.high * d.high));
+    const double a2 = a * a, b2 = b * b, bend = e->stretch * c * c;
+    const double c3 = 0.25 * bend * c, c5 = 1.5 * bend * c3, c7 = 2.5 * bend * c5;
+    const asphere_range p = sum_range(e, SUM_P, 0.5 * c * a, 0.5 * c * b, k->count, k->p, from, to),
+                        g = sum_range(e, SUM_G, c3 * a2 * a, c3 * b2 * b, k->count, k->g, from, to),
+                        d = sum_range(e, SUM_TURN, c5 * a2 * a2 * a, c5 * b2 * b2 * b, k->count, k->turn, from, to);
+    asphere_range g2 = product(g, g);
+    g2.low = fmax(g2.low, 0.0);
+    const int sign = sign_of_sum(g2, 3.0, product(p, d));
+    if (e->odd_terms > 0) /* how T changes is not followed */
+        return (form_turning){sign, 0};
+    const asphere_range n = range_of(c7 * a2 * a2 * a2 * a, c7 * b2 * b2 * b2 * b, k->count, k->next, from, to);
+    return (form_turning){sign, sign_of_sum(product(g, d), 5.0, product(p, n))};
 }
 
 /* What is known about a side from the axis up to a radius. */
 typedef struct form_so_far {
     bool convex, concave;
-    bool falls, rises; /* whether B >= 0 is possible, with p > 0 > g or with p < 0 < g */
-    bool steady;       /* B rises wherever B >= 0 is possible */
-    bool within;       /* B >= 0 is possible in the last piece */
-    int intervals;     /* number of intervals in which B >= 0 is possible */
+    int within; /* in the last piece B >= 0 was possible, with p > 0 > g (1), with p < 0 < g (2), or either (3); or 0 */
+    int turns;  /* the most zeros of h */
+    int sign;   /* of T, in the last piece; 0: not known yet in this interval of q */
+    int change; /* T may have taken that sign since; 0: it has not changed */
+    bool bounded;
 } form_so_far;
 
-static bool turns_once(const form_so_far *f)
+/* One more piece in which B >= 0 is possible. */
+static void count_branches(form_so_far *f, form_turning t)
 {
-    return !(f->falls && f->rises) && f->steady && f->intervals <= 1;
+    if (f->change != 0 && t.sign != -f->change && !(t.sign == 0 && t.rise == f->change)) {
+        f->turns++;
+        f->sign = f->change;
+    }
+    if (t.sign != 0 || t.rise != f->change)
+        f->change = 0;
+    if (t.sign != 0) {
+        f->turns += f->sign == -t.sign;
+        f->sign = t.sign;
+    } else if (t.rise == 0) {
+        f->bounded = false;
+    } else if (f->sign != t.rise) {
+        f->change = t.rise;
+    }
 }
 
 static void extend(form_so_far *f, const even_asphere *e, const form_terms *k, double inwards, double from, double to)
@@ -282,12 +335,22 @@ static void extend(form_so_far *f, const even_asphere *e, const form_terms *k, d
     f->concave &= inwards > 0.0 ? down : up;
     const bool falls = p.high > 0.0 && g.low < 0.0 && bend.low <= 0.0,
                rises = p.low < 0.0 && g.high > 0.0 && bend.high >= 0.0;
-    if (falls || rises) {
-        f->steady &= least_turning(e, k, from, to) >= 0.0;
-        f->intervals += !f->within;
+    const int within = (falls ? 1 : 0) + (rises ? 2 : 0);
+    if (within == 0 || f->within == 0) { /* an interval of q ends here, or begins */
+        f->turns += f->change != 0;
+        f->turns += within != 0;
+        f->sign = f->change = 0;
     }
-    f->within = falls || rises;
-    f->falls |= falls, f->rises |= rises;
+    f->bounded &= within != 3 && within + f->within != 3;
+    f->within = within;
+    if (within != 0)
+        count_branches(f, turning_of(e, k, from, to));
+}
+
+/* The most zeros of h on either side of the axis. */
+static int turns_of(const form_so_far *f)
+{
+    return f->turns + (f->change != 0);
 }
 
 static bool is_steep(const even_asphere *e, double rim, double from, double to)
@@ -303,18 +366,20 @@ static lens_form form_of_asphere(const solid_shape *s, int k, double *within)
     const even_asphere e = lens_profile_of(s, k).e;
     const form_terms terms = form_terms_of(&e);
     const double inwards = k == 0 ? 1.0 : -1.0, rim = lens_clear_of(s, k);
-    form_so_far f = {.convex = true, .concave = true, .steady = true};
+    form_so_far f = {.convex = true, .concave = true, .bounded = true};
     for (int i = 0; i < FORM_PIECES; i++) {
         const double from = rim * rim * i / FORM_PIECES, to = rim * rim * (i + 1) / FORM_PIECES;
         *within = sqrt(from);
         if (is_steep(&e, rim, from, to))
             return LENS_STEEP;
         extend(&f, &e, &terms, inwards, from, to);
-        if (!f.convex && !f.concave && !turns_once(&f))
+        if (!f.convex && !f.concave && !(f.bounded && turns_of(&f) <= TURNS_MAX))
             return LENS_TURNS;
     }
     *within = rim;
-    return f.convex ? LENS_CONVEX : f.concave ? LENS_CONCAVE : LENS_ONE_TURN;
+    return f.convex    ? LENS_CONVEX
+           : f.concave ? LENS_CONCAVE
+                       : (lens_form)(LENS_CONCAVE + (turns_of(&f) > 1 ? turns_of(&f) : 1));
 }
 
 lens_form lens_round_form(const solid_shape *s, int k, double *within)
@@ -322,4 +387,15 @@ lens_form lens_round_form(const solid_shape *s, int k, double *within)
     const lens_profile e = lens_profile_of(s, k);
     *within = lens_clear_of(s, k);
     return e.aspheric ? form_of_asphere(s, k, within) : e.concave ? LENS_CONCAVE : LENS_CONVEX;
+}
+
+int lens_chords_of(const solid_shape *s, const lens_form form[2])
+{
+    int intervals = -1;
+    for (int k = 0; k < 2; k++) {
+        const lens_profile e = lens_profile_of(s, k);
+        /* The ring of a side that is not concave can be crossed besides the side. */
+        intervals += (int)form[k] + (lens_has_ring(&e) && !lens_is_flat(&e) && form[k] != LENS_CONCAVE);
+    }
+    return intervals;
 }

@@ -65,6 +65,9 @@ double shape_farthest(const solid_shape *s, vec3 d)
 PRIMITIVE_RULE(scaled_1);
 PRIMITIVE_RULE(scaled_2);
 PRIMITIVE_RULE(scaled_3);
+PRIMITIVE_RULE(scaled_5);
+PRIMITIVE_RULE(scaled_7);
+PRIMITIVE_RULE(scaled_9);
 
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
@@ -149,7 +152,9 @@ void shape_primitives(const solid_shape *s, primitive *parts)
     rule->primitives(&own, inner);
     const vec3 k = sizes(s->scale);
     for (int i = 0; i < rule->primitive_count; i++) {
-        const primitive_rule *const by_intervals[] = {&scaled_1_rule, &scaled_2_rule, &scaled_3_rule};
+        const primitive_rule *const by_intervals[CHORDS_MAX] = {
+            &scaled_1_rule, &scaled_2_rule, &scaled_3_rule, &scaled_5_rule, &scaled_5_rule,
+            &scaled_7_rule, &scaled_7_rule, &scaled_9_rule, &scaled_9_rule};
         parts[i] = primitive_placed(s, by_intervals[inner[i].rule->ISA_BASELINE->intervals - 1],
                                     inner[i].extent * fmax(k.x, fmax(k.y, k.z)));
         parts[i].sides = inner[i].sides;
