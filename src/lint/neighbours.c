@@ -111,7 +111,8 @@ static bool line_through(const scene_geometry *a, const region *b, const line *l
     const primitive *p = &a->primitives[b->outside];
     if (!p->rule)
         return through_mesh(&a->meshes->parts[a->meshes->by_primitive[b->outside]], l, level, out);
-    interval outer[CHORDS_MAX], inner[CHORDS_MAX] = {{HUGE_VAL, HUGE_VAL}};
+    interval outer[CHORDS_MAX], inner[CHORDS_MAX];
+    inner[0] = (interval){HUGE_VAL, HUGE_VAL};
     const int count = primitive_chords(p, l->origin, l->direction, outer);
     if (b->hollow >= 0 && primitive_chords(&a->primitives[b->hollow], l->origin, l->direction, inner) == 0)
         inner[0] = (interval){HUGE_VAL, HUGE_VAL};

@@ -122,7 +122,8 @@ static const decision decisions[] = {
      SAID, SAID},
     {PARAM_SOLID, "inner_radius floor sides top_radius tube_radius radius_1 radius_2 thickness diameter", SAID, SAID},
     {PARAM_SOLID,
-     "diameter_1 diameter_2 chamfer_1 chamfer_2 conic_1 conic_2 a4_1 a6_1 a8_1 a10_1 a12_1 a14_1 a16_1 a18_1 a20_1 a4_2 a6_2 a8_2 a10_2 "
+     "diameter_1 diameter_2 chamfer_1 chamfer_2 conic_1 conic_2 a4_1 a6_1 a8_1 a10_1 a12_1 a14_1 a16_1 a18_1 a20_1 "
+     "a4_2 a6_2 a8_2 a10_2 "
      "a12_2 a14_2 a16_2 a18_2 a20_2 size mesh points scale copies spacing",
      SAID, SAID},
     {PARAM_SOLID,

@@ -25,6 +25,7 @@ static const struct {
     {"dgauss.50mm.dat", 50.0, 0.5, 0, 0},
     {"fisheye.10mm.dat", 10.0, 0.02, 0, 0},
     {"wide.22mm.dat", 22.0, 0.05, 0, 0},
+    {"phone.csv", 0, 0, 0.111974933, 1e-8},
     {"hubble.csv", 57600.0, 1.0, 6365.20955, 0.05},
 };
 

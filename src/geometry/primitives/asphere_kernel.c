@@ -301,12 +301,13 @@ static int cross_lens(const primitive *p, local_ray r, int64_t at, interval chor
     asphere_part part[2];
     for (int k = 0; k < 2; k++)
         part[k] = part_of_side(p, k, r, rim, at);
-    const interval body = interval_both(rim, within_bevels(p, r, at));
+    const interval body = lens_has_bevels(p) ? interval_both(rim, within_bevels(p, r, at)) : rim;
+    const int most = most_chords(p);
     int count = 0;
     for (int i = 0; i < part[0].count; i++)
         for (int k = 0; k < part[1].count; k++) {
             const interval both = interval_both(body, interval_both(part[0].list[i], part[1].list[k]));
-            if (both.in < both.out && count < most_chords(p))
+            if (both.in < both.out && count < most)
                 chords[count++] = both;
         }
     return count;
@@ -389,21 +390,22 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     const double from_axis = sqrt(q.x * q.x + q.z * q.z), along = leaving ? 1.0 : -1.0;
     const double x = q.x / from_axis, z = q.z / from_axis, outside = 0x1p-30 * p->radius;
     side_point faces[FACES_OF_LENS] = {{.point = vec3_make(x * p->radius, q.y, z * p->radius),
-                            .normal = vec3_make(x, 0.0, z),
-                            .apart = magnitude(from_axis - p->radius)},
-                           point_on(p, 0, q),
-                           point_on(p, 1, q)};
+                                        .normal = vec3_make(x, 0.0, z),
+                                        .apart = magnitude(from_axis - p->radius)},
+                                       point_on(p, 0, q),
+                                       point_on(p, 1, q)};
     int best = 0, count = 3;
     double least = HUGE_VAL;
     for (int k = 0; k < 2 && p->details; k++) {
         faces[count++] = point_on_ring(p, k, q, from_axis, outside);
         faces[1 + k].apart += from_axis > lens_clear(p, k) ? outside : 0.0;
+    }
+    for (int k = 0; k < 2 && lens_has_bevels(p); k++) {
         for (int j = 0; j < 2; j++) /* the side and its ring */
             faces[1 + k + 2 * j].apart += from_axis > lens_bevel(p, k) ? outside : 0.0;
+        faces[count++] =
+            lens_has_bevel(p, k) ? point_on_bevel(p, k, q, from_axis, outside) : (side_point){.apart = HUGE_VAL};
     }
-    for (int k = 0; k < 2; k++, count++)
-        faces[count] = lens_has_bevel(p, k) ? point_on_bevel(p, k, q, from_axis, outside)
-                                            : (side_point){.apart = HUGE_VAL};
     for (int k = 0; k < count; k++) {
         const double turned = vec3_dot(vec3_make(r.dx, r.dy, r.dz), faces[k].normal);
         const double cost = faces[k].apart + (turned * along > 0.0 ? 0.0 : outside);

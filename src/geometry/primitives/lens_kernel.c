@@ -164,5 +164,5 @@ const primitive_functions KERNEL(lens_functions) = {1,      rows,       one,    
                                                     chords, lens_flats, lens_mapping};
 const primitive_functions KERNEL(meniscus_functions) = {2,      concave_rows, concave_one, points, lens_contains,
                                                         chords, lens_flats,   lens_mapping};
-const primitive_functions KERNEL(biconcave_functions) = {LENS_CHORDS, concave_rows, concave_one, points, lens_contains,
-                                                         chords, lens_flats,   lens_mapping};
+const primitive_functions KERNEL(biconcave_functions) = {LENS_CHORDS,   concave_rows, concave_one, points,
+                                                         lens_contains, chords,       lens_flats,  lens_mapping};

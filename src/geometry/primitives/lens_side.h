@@ -163,6 +163,11 @@ static inline bool lens_has_bevel(const primitive *p, int k)
     return lens_bevel(p, k) < HUGE_VAL;
 }
 
+static inline bool lens_has_bevels(const primitive *p)
+{
+    return lens_has_bevel(p, 0) || lens_has_bevel(p, 1);
+}
+
 static inline double lens_apex(const primitive *p, int k)
 {
     const lens_details *d = p->details;
@@ -171,8 +176,7 @@ static inline double lens_apex(const primitive *p, int k)
 
 static inline bool is_within_bevel(const primitive *p, int k, vec3 q)
 {
-    return !lens_has_bevel(p, k) ||
-           sqrt(q.x * q.x + q.z * q.z) <= bevel_slope(k) * (q.y - lens_apex(p, k));
+    return !lens_has_bevel(p, k) || sqrt(q.x * q.x + q.z * q.z) <= bevel_slope(k) * (q.y - lens_apex(p, k));
 }
 
 static inline bool lens_contains(const primitive *p, vec3 q)

@@ -128,8 +128,9 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
 }
 
 /* By the number of intervals of a line in the primitive within. */
-#define SCALED_FUNCTIONS(most)                            \
-    const primitive_functions KERNEL(scaled_##most##_functions) = {most, rows, one, points, contains, chords, flats, mapping}
+#define SCALED_FUNCTIONS(most)                                                                      \
+    const primitive_functions KERNEL(scaled_##most##_functions) = {most,     rows,   one,   points, \
+                                                                   contains, chords, flats, mapping}
 SCALED_FUNCTIONS(1);
 SCALED_FUNCTIONS(2);
 SCALED_FUNCTIONS(3);

@@ -277,7 +277,8 @@ static void primitives(const solid_shape *s, primitive *out)
     const bool aspheric = details(s, NULL) > 0;
     const double reach = aspheric ? lens_rim(s) + fmax(fabs(lowest(s)), fabs(highest(s)))
                                   : s->thickness + lens_rim(s) + fmax(fabs(lens_edge(s, 0)), fabs(lens_edge(s, 1)));
-    out[0] = primitive_placed(s, aspheric ? by_chords[(most_chords(s) - 3) / 2] : by_concave_sides[one.concave + two.concave], reach);
+    out[0] = primitive_placed(
+        s, aspheric ? by_chords[(most_chords(s) - 3) / 2] : by_concave_sides[one.concave + two.concave], reach);
     out[0].radius = lens_rim(s);
     out[0].top = s->thickness;
     out[0].lens = (lens_sides){.curvature = {one.e.curvature, two.e.curvature}, .conic = {one.conic, two.conic}};
@@ -311,7 +312,8 @@ static double farthest_of_side(const solid_shape *s, int k, vec3 d)
     if (e.twisted)
         return lens_twisted_reach(s, k, d);
     const double out = hypot(d.x, d.z), outwards = k == 0 ? -d.y : d.y, slope = out / outwards;
-    const double at_rim = fmax(lens_rim(s) * out + lens_rim_edge(s, k) * d.y, lens_end(s, k) * out + lens_edge(s, k) * d.y);
+    const double at_rim =
+        fmax(lens_rim(s) * out + lens_rim_edge(s, k) * d.y, lens_end(s, k) * out + lens_edge(s, k) * d.y);
     double rho = lens_seen_of(s, k);
     if (e.aspheric)
         return fmax(at_rim, lens_reach_of(s, k, out, d.y));

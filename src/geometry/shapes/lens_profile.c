@@ -260,8 +260,8 @@ static asphere_range product(asphere_range a, asphere_range b)
                            fmax(fmax(corner[0], corner[1]), fmax(corner[2], corner[3]))};
 }
 
-/* 1 or -1: the sum of both has that sign in its whole range; 0: unknown. */
-static int sign_of_sum(asphere_range a, double times, asphere_range b)
+/* 1 or -1: times a - b has that sign in its whole range; 0: unknown. */
+static int sign_of_difference(double times, asphere_range a, asphere_range b)
 {
     return times * a.low - b.high >= 0.0 ? 1 : times * a.high - b.low <= 0.0 ? -1 : 0;
 }
@@ -273,7 +273,7 @@ static asphere_range sum_range(const even_asphere *e, int sum, double conic_from
                             : range_of(conic_from, conic_to, count, k, from, to);
 }
 
-/* The signs of T and of dT/dq; 0: unknown. */
+/* The sign of T, or that of dT/dq if T may change it; 0: unknown. */
 typedef struct form_turning {
     int sign, rise;
 } form_turning;
@@ -288,11 +288,11 @@ static form_turning turning_of(const even_asphere *e, const form_terms *k, doubl
                         d = sum_range(e, SUM_TURN, c5 * a2 * a2 * a, c5 * b2 * b2 * b, k->count, k->turn, from, to);
     asphere_range g2 = product(g, g);
     g2.low = fmax(g2.low, 0.0);
-    const int sign = sign_of_sum(g2, 3.0, product(p, d));
-    if (e->odd_terms > 0) /* how T changes is not followed */
+    const int sign = sign_of_difference(3.0, g2, product(p, d));
+    if (sign != 0 || e->odd_terms > 0) /* of odd terms, how T changes is not followed */
         return (form_turning){sign, 0};
     const asphere_range n = range_of(c7 * a2 * a2 * a2 * a, c7 * b2 * b2 * b2 * b, k->count, k->next, from, to);
-    return (form_turning){sign, sign_of_sum(product(g, d), 5.0, product(p, n))};
+    return (form_turning){0, sign_of_difference(5.0, product(g, d), product(p, n))};
 }
 
 /* What is known about a side from the axis up to a radius. */

@@ -152,9 +152,9 @@ void shape_primitives(const solid_shape *s, primitive *parts)
     rule->primitives(&own, inner);
     const vec3 k = sizes(s->scale);
     for (int i = 0; i < rule->primitive_count; i++) {
-        const primitive_rule *const by_intervals[CHORDS_MAX] = {
-            &scaled_1_rule, &scaled_2_rule, &scaled_3_rule, &scaled_5_rule, &scaled_5_rule,
-            &scaled_7_rule, &scaled_7_rule, &scaled_9_rule, &scaled_9_rule};
+        const primitive_rule *const by_intervals[CHORDS_MAX] = {&scaled_1_rule, &scaled_2_rule, &scaled_3_rule,
+                                                                &scaled_5_rule, &scaled_5_rule, &scaled_7_rule,
+                                                                &scaled_7_rule, &scaled_9_rule, &scaled_9_rule};
         parts[i] = primitive_placed(s, by_intervals[inner[i].rule->ISA_BASELINE->intervals - 1],
                                     inner[i].extent * fmax(k.x, fmax(k.y, k.z)));
         parts[i].sides = inner[i].sides;

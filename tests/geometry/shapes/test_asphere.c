@@ -273,9 +273,10 @@ static void forms_are_those_of_second_derivatives(void **state)
         assert_true(form >= LENS_TURNS || within == 1.0);
         twice += form == LENS_TWO_TURNS && turns == 2;
     }
-    print_message("%d convex, %d concave, %d with a turn, %d with two, %d of which have two, %d with three, %d refused\n",
-                  count[LENS_CONVEX], count[LENS_CONCAVE], count[LENS_ONE_TURN], count[LENS_TWO_TURNS], twice,
-                  count[LENS_THREE_TURNS], count[LENS_TURNS]);
+    print_message(
+        "%d convex, %d concave, %d with a turn, %d with two, %d of which have two, %d with three, %d refused\n",
+        count[LENS_CONVEX], count[LENS_CONCAVE], count[LENS_ONE_TURN], count[LENS_TWO_TURNS], twice,
+        count[LENS_THREE_TURNS], count[LENS_TURNS]);
     assert_true(count[LENS_CONVEX] > 500 && count[LENS_CONCAVE] > 500 && count[LENS_ONE_TURN] > 500);
     assert_true(twice > count[LENS_TWO_TURNS] / 2 && count[LENS_TWO_TURNS] > 100);
 }

@@ -87,7 +87,8 @@ static void a_level_line_crosses_ripples(void **state)
         placed.scale = vec3_make(1.0, 1.0, trial % 2 ? 0.5 : 1.0);
         const region_source source = {.shape = &placed, .priority = 1, .medium = 1, .shadow_transmittance = 1.0};
         scene_geometry *a = NULL;
-        assert_int_equal(scene_geometry_build(&source, 1, 0, trial < 2 ? TREE_IF_MANY : TREE_ALWAYS, &a, NULL), STATUS_OK);
+        assert_int_equal(scene_geometry_build(&source, 1, 0, trial < 2 ? TREE_IF_MANY : TREE_ALWAYS, &a, NULL),
+                         STATUS_OK);
         const double y = 0.022;
         const one_ray r = {{-5.0, y, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
         one_hit hits[HITS_MAX];
@@ -132,25 +133,21 @@ static void volumes_of_bevelled_lenses(void **state)
 {
     (void)state;
     const double pi = acos(-1.0), R = 1.0, t = 0.6, c = 0.25, b = 0.1;
-    const solid_shape plate = {
-        .kind = SHAPE_LENS, .thickness = t, .diameter = 2.0 * R, .chamfer_1 = c, .chamfer_2 = b};
+    const solid_shape plate = {.kind = SHAPE_LENS, .thickness = t, .diameter = 2.0 * R, .chamfer_1 = c, .chamfer_2 = b};
     assert_int_equal(solid_shape_check(&plate, NULL), STATUS_OK);
     const double whole = pi * R * R * t - pi * c * c * (R - c / 3.0) - pi * b * b * (R - b / 3.0);
     assert_true(fabs(volume_by_columns(&plate) / whole - 1.0) < 1e-4);
 
     const double S = 2.0, thick = 1.0, end = R - c;
-    const solid_shape lens = {.kind = SHAPE_LENS,
-                              .radius_1 = S,
-                              .radius_2 = -S,
-                              .thickness = thick,
-                              .diameter = 2.0 * R,
-                              .chamfer_1 = c};
+    const solid_shape lens = {
+        .kind = SHAPE_LENS, .radius_1 = S, .radius_2 = -S, .thickness = thick, .diameter = 2.0 * R, .chamfer_1 = c};
     assert_int_equal(solid_shape_check(&lens, NULL), STATUS_OK);
     const double below[2] = {2.0 * pi * (0.5 * S * end * end + (pow(S * S - end * end, 1.5) - S * S * S) / 3.0),
                              2.0 * pi * (0.5 * S * R * R + (pow(S * S - R * R, 1.5) - S * S * S) / 3.0)};
     const double sag = S - sqrt(S * S - end * end);
     /* from the axis to the bevel below the sphere; then below the cone, sag + r - end */
-    const double under = below[0] + pi * (R * R - end * end) * (sag - end) + 2.0 * pi / 3.0 * (R * R * R - end * end * end);
+    const double under =
+        below[0] + pi * (R * R - end * end) * (sag - end) + 2.0 * pi / 3.0 * (R * R * R - end * end * end);
     const double expected = pi * R * R * thick - below[1] - under;
     assert_true(fabs(volume_by_columns(&lens) / expected - 1.0) < 1e-4);
     uint64_t seed = 5;
