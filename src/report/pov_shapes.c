@@ -170,8 +170,8 @@ static void put_prism(const solid_shape *s, double e, FILE *out)
     fputs(" }", out);
 }
 
-/* Whether the side is a conic up to the rim, without a bevel, with all of the lens on one side of an ellipsoid's centre, or on one sheet
- * of a hyperboloid. */
+/* Whether the side is a conic up to the rim, without a bevel, with all of the lens on one side of an ellipsoid's
+ * centre, or on one sheet of a hyperboloid. */
 static bool is_conic(const solid_shape *s, int k)
 {
     const lens_profile side = lens_profile_of(s, k);

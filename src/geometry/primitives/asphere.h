@@ -157,8 +157,8 @@ typedef struct lens_details {
     double odd[2][ASPHERE_ODD];
     side_form form[2];
     double curvature_x[2], conic_x[2];
-    /* The bevel between a side and the rim, at 45 degrees: the radius where it begins, infinite without a bevel, and the
-     * height of its cone's apex. */
+    /* The bevel between a side and the rim, at 45 degrees: the radius where it begins, infinite without a bevel, and
+     * the height of its cone's apex. */
     double bevel[2], apex[2];
 } lens_details;
 

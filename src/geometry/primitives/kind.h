@@ -24,8 +24,8 @@ static inline interval interval_of_quadric(quadric_roots q)
 }
 
 /* The interval, in the ray's t, in which a ray is in the infinite half cone x^2 + z^2 <= w^2, w = radius + slope y > 0.
- * The discriminant is computed by Lagrange's identity for x^2 + z^2 - w^2. The quadratic is solved from the line's point
- * nearest to the axis's point at `middle`; for a ray that starts on the cone, from its start, where c = 0. */
+ * The discriminant is computed by Lagrange's identity for x^2 + z^2 - w^2. The quadratic is solved from the line's
+ * point nearest to the axis's point at `middle`; for a ray that starts on the cone, from its start, where c = 0. */
 ALWAYS_INLINE quadric_roots half_cone_cross(double radius, double slope, double middle, local_ray r, int64_t starts_on)
 {
     const double dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;

@@ -139,8 +139,8 @@ double lens_reach_of(const solid_shape *s, int k, double out, double up)
  *
  * If p and g have the same sign, so has h. Otherwise h = 0 at b^2 = B = q + p / (2 g), whose derivative is (3 g^2 - p
  * dg/dq) / (2 g^2). Only B >= 0 counts; there p + 2 q g, half the second derivative along the meridian, has the sign of
- * g: the side may have turned. In each interval of q in which that is possible, with p > 0 > g or with p < 0 < g, h has at
- * most as many zeros on either side of the axis as B has monotonic branches: one more than T = 3 g^2 - p dg/dq has
+ * g: the side may have turned. In each interval of q in which that is possible, with p > 0 > g or with p < 0 < g, h has
+ * at most as many zeros on either side of the axis as B has monotonic branches: one more than T = 3 g^2 - p dg/dq has
  * changes of sign. T changes it at most once where dT/dq = 5 g dg/dq - p d^2g/dq^2 keeps its own. With n zeros the line
  * crosses the side at most 2 n + 2 times, by Rolle's theorem. */
 

@@ -77,8 +77,8 @@ double lens_twisted_reach(const solid_shape *s, int k, vec3 d);
 status lens_twisted_check(const solid_shape *s, int k, diagnostic *why);
 
 /* The form of a side, seen from outside. The values up to LENS_THREE_TURNS are the most intervals in which a line is on
- * the inner side: for n turns by Rolle's theorem, as the second derivative of the height along any line changes its sign
- * at most 2 n times. LENS_TURNS: more than the kernels can bound. */
+ * the inner side: for n turns by Rolle's theorem, as the second derivative of the height along any line changes its
+ * sign at most 2 n times. LENS_TURNS: more than the kernels can bound. */
 typedef enum lens_form {
     LENS_CONVEX = 1,
     LENS_CONCAVE,

@@ -247,8 +247,8 @@ static int turns_along_lines(const solid_shape *s, bool *up, bool *down)
     return most;
 }
 
-/* Along any line, the second derivative keeps its sign on a convex and on a concave side, and changes it at most n times
- * on either side of the axis where a side turns n times; most that are said to turn twice do. */
+/* Along any line, the second derivative keeps its sign on a convex and on a concave side, and changes it at most n
+ * times on either side of the axis where a side turns n times; most that are said to turn twice do. */
 static void forms_are_those_of_second_derivatives(void **state)
 {
     (void)state;

@@ -126,9 +126,9 @@ static double volume_by_columns(const solid_shape *s)
     return sum * step * step;
 }
 
-/* A plate of thickness t and radius R loses, by a bevel of length c, the integral of 2 pi r (r - R + c) from R - c to R,
- * pi c^2 (R - c / 3). A biconvex lens of spheres of radius S has below side 1, up to the radius r, the volume 2 pi (S
- * r^2 / 2 + ((S^2 - r^2)^(3/2) - S^3) / 3), and its bevel is the ring between the cone and the sphere. */
+/* A plate of thickness t and radius R loses, by a bevel of length c, the integral of 2 pi r (r - R + c) from R - c to
+ * R, pi c^2 (R - c / 3). A biconvex lens of spheres of radius S has below side 1, up to the radius r, the volume 2 pi
+ * (S r^2 / 2 + ((S^2 - r^2)^(3/2) - S^3) / 3), and its bevel is the ring between the cone and the sphere. */
 static void volumes_of_bevelled_lenses(void **state)
 {
     (void)state;
