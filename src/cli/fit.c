@@ -62,6 +62,37 @@ static void show_progress(void *context, size_t evaluations, double best)
     progress_draw(&p->line, fmin((double)evaluations / p->limit, 1.0));
 }
 
+/* --- intervals --- */
+
+static const char *interval_kind(const fit_result *r, size_t i)
+{
+    return r->has_profile[i] ? "profile, 95%" : r->has_interval ? "linear, 95%" : "none";
+}
+
+static double interval_end(const fit_result *r, size_t i, int side)
+{
+    return r->has_profile[i] ? r->profile[i][side]
+           : r->has_interval ? r->best.x[i] + (side ? r->half[i] : -r->half[i])
+                             : (double)NAN;
+}
+
+/* "1.32 .. 1.35 linear"; an end that is only the parameter's bound is in brackets. */
+static const char *interval_text(const fit_result *r, size_t i, char text[96])
+{
+    const double ends[2] = {interval_end(r, i, 0), interval_end(r, i, 1)}, within = 0.05 * (ends[1] - ends[0]);
+    size_t used = 0;
+    text[0] = '-', text[1] = '\0';
+    for (int side = 0; side < 2 && !isnan(within); side++) {
+        char end[NUMBER_TEXT_MAX];
+        const bool open = r->has_profile[i] && r->open[i][side];
+        number_format_within(ends[side], within, end);
+        used += (size_t)snprintf(text + used, 96 - used, open ? "%s[%s]" : "%s%s", side ? " .. " : "", end);
+    }
+    if (!isnan(within) && !r->has_profile[i])
+        snprintf(text + used, 96 - used, " linear");
+    return text;
+}
+
 /* --- JSON --- */
 
 static json_t *parameter_json(const fit *f, const fit_result *r, size_t i)
@@ -74,8 +105,11 @@ static json_t *parameter_json(const fit *f, const fit_result *r, size_t i)
     json_add_as(&o, "to", json_of_real(p->to));
     json_add_as(&o, "at_bound", json_boolean(r->derivative.at_bound[i]));
     json_add_as(&o, "error", json_of_real(r->has_interval ? r->error[i] : (double)NAN));
-    json_add_as(&o, "low", json_of_real(r->has_interval ? r->best.x[i] - r->half[i] : (double)NAN));
-    json_add_as(&o, "high", json_of_real(r->has_interval ? r->best.x[i] + r->half[i] : (double)NAN));
+    json_add_as(&o, "interval", json_of_text(interval_kind(r, i)));
+    json_add_as(&o, "low", json_of_real(interval_end(r, i, 0)));
+    json_add_as(&o, "high", json_of_real(interval_end(r, i, 1)));
+    json_add_as(&o, "low_at_bound", json_boolean(r->has_profile[i] && r->open[i][0]));
+    json_add_as(&o, "high_at_bound", json_boolean(r->has_profile[i] && r->open[i][1]));
     json_add_as(&o, "tolerance_down", json_of_real(r->tolerance[i][0]));
     json_add_as(&o, "tolerance_up", json_of_real(r->tolerance[i][1]));
     for (size_t k = 0; k < f->parameter_count; k++)
@@ -118,7 +152,6 @@ static json_t *result_json(const fit_run *run, const fit_result *r)
     json_add_as(&o, "ended", json_of_text(r->ended));
     json_add_as(&o, "merit", json_of_real(r->best.merit));
     json_add_as(&o, "freedom", json_integer(r->freedom));
-    json_add_as(&o, "interval", json_of_text(r->has_interval ? "linear, 95%" : "none"));
     json_add_as(&o, "worsening", json_of_real(r->worsening));
     json_add_as(&o, "parameters", parameters);
     json_add_as(&o, "targets", targets);
@@ -137,19 +170,17 @@ static const char *text_of(double value, const char *format, char text[32])
 
 static void print_parameters(const fit *f, const fit_result *r)
 {
-    char low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX], down[32], up[32];
-    printf("\n%-24s %16s  %-33s %11s %11s\n", "parameter", "value",
-           r->has_interval ? "95% interval, linear" : "no interval", "down", "up");
+    char interval[96], down[32], up[32];
+    bool open = false;
+    printf("\n%-24s %16s  %-33s %11s %11s\n", "parameter", "value", "95% interval", "down", "up");
     for (size_t i = 0; i < f->parameter_count; i++) {
-        const double x = r->best.x[i], half = r->half[i];
-        char interval[72] = "-";
-        if (r->has_interval)
-            snprintf(interval, sizeof interval, "%s .. %s", number_format_within(x - half, half / 10, low),
-                     number_format_within(x + half, half / 10, high));
-        printf("%-24s %16.10g  %-33s %11s %11s%s\n", f->parameters[i].name, x, interval,
+        printf("%-24s %16.10g  %-33s %11s %11s%s\n", f->parameters[i].name, r->best.x[i], interval_text(r, i, interval),
                text_of(r->tolerance[i][0], "%.4g", down), text_of(r->tolerance[i][1], "%+.4g", up),
                r->derivative.at_bound[i] ? "  at its bound" : "");
+        open = open || (r->has_profile[i] && (r->open[i][0] || r->open[i][1]));
     }
+    if (open)
+        printf("[ ]: the parameter's bound, at which the targets still allow it\n");
     if (r->worsening > 0.0)
         printf("down, up: the change of one parameter that worsens the merit by %g\n", r->worsening);
 }
@@ -222,6 +253,26 @@ static void note_idle_parameters(const fit *f, const fit_result *r)
     }
 }
 
+/* What is doubtful about the intervals. */
+static void note_profiles(const fit *f, const fit_result *r)
+{
+    char text[400];
+    if (r->has_better) {
+        snprintf(text, sizeof text,
+                 "%s: the search missed a better point, which a profile found: merit %.6g instead of %.6g; choose a "
+                 "start nearer to it, or a global method first",
+                 f->s->name, r->better.merit, r->best.merit);
+        terminal_note(text);
+    }
+    if (r->profile_lacking > 0) {
+        snprintf(text, sizeof text,
+                 "%s: %zu of %zu intervals are linear, since profiles need more than %ld evaluations; raise "
+                 "evaluations, or choose interval: linear",
+                 f->s->name, r->profile_lacking, f->parameter_count, f->evaluations);
+        terminal_note(text);
+    }
+}
+
 static status write_scene(const fit *f, const fit_result *r, const char *path, diagnostic *why)
 {
     scene *s = NULL;
@@ -247,7 +298,7 @@ static status search_and_report(const fit_request *request, fit_run *run, fit_pr
     if (code == STATUS_INTERRUPTED)
         code = report_interrupted(run, why);
     if (code == STATUS_OK && !request->quiet)
-        note_idle_parameters(f, r);
+        note_idle_parameters(f, r), note_profiles(f, r);
     if (code == STATUS_OK && request->output)
         code = write_scene(f, r, request->output, why);
     if (code == STATUS_OK && request->json)
@@ -260,7 +311,7 @@ static status search_and_report(const fit_request *request, fit_run *run, fit_pr
 
 static status run_fit(const fit_request *request, const fit *f, diagnostic *why)
 {
-    fit_progress progress = {.limit = (double)f->evaluations * (double)f->stage_count};
+    fit_progress progress = {.limit = (double)f->evaluations * (double)(f->stage_count + 1)};
     const fit_options settings = {.results = request->results, .progressed = show_progress, .context = &progress};
     fit_run *run = NULL;
     progress_start(&progress.line, progress.label);

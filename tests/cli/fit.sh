@@ -35,10 +35,32 @@ equal 'nothing is measured again' "$before" "$(<results/least_spot/fit.csv)"
 equal 'the JSON is an object with a value' "$(python3 -c '
 import json, sys
 r = json.load(open("out"))
-print(r["schema"], r["goal"], round(r["parameters"][0]["value"], 2), r["interval"], r["targets"][0]["quantity"])')" \
+p = r["parameters"][0]
+print(r["schema"], r["goal"], round(p["value"], 2), p["interval"], r["targets"][0]["quantity"])')" \
     '1 minimise 0.71 none focus_rms'
 fit "$fits/least_spot.study" --quiet
 equal '--quiet prints nothing' "$code$(<out)$(<err)" 0
+
+# --- intervals
+"$program" fit "$fits/index_of_water.study" --results out_water >out 2>err
+grep -qE '^liquid\.ior +1\.33[0-9]+ +1\.3[0-9]+ \.\. 1\.3[0-9]+  ' out && [[ ! -s err ]]
+verdict $? 'the index has an interval of its profile' "$(<out)$(<err)"
+grep -q ',profile,' out_water/index_of_water/fit.csv
+verdict $? 'evaluations of a profile are rows'
+sed 's|scene: ../scenes|scene: '"$root"'/experiments/scenes|; s/to: 1.6, start: 1.45/to: 1.334/' \
+    "$fits/index_of_water.study" >bound.study
+fit bound.study
+grep -qE '^liquid\.ior .* \.\. \[1\.33[0-9]*\] ' out && grep -q '^\[ \]: the parameter.s bound, at which' out
+verdict $? 'an end at the bound is in brackets' "$(<out)"
+fit bound.study --json
+equal 'JSON tells which end it is' "$(python3 -c '
+import json
+p = json.load(open("out"))["parameters"][0]
+print(p["interval"], p["low_at_bound"], p["high_at_bound"], p["high"])')" 'profile, 95% False True 1.334'
+echo '  interval: linear' >>bound.study
+fit bound.study
+grep -qE '^liquid\.ior .* linear  ' out
+verdict $? 'linear intervals are named' "$(<out)"
 
 # --- a parameter without effect
 cat >idle.study <<END
@@ -60,6 +82,10 @@ verdict $? 'fit needs a study' "$(<err)"
 fit "$root/experiments/depth.study"
 grep -q 'depth.study:[0-9]*:1: the study has no section fit; ' err && ((code == 2))
 verdict $? 'a study without a fit is refused' "$(<err)"
+sed 's/edges.left, set/edges.lft, set/' bound.study >typo.study
+fit typo.study
+grep -qE 'typo.study:[0-9]+:24: the scene has no metric .edges.lft.; list the metrics' err && ((code == 2))
+verdict $? 'a misspelt metric has its place' "$(<err)"
 "$program" study run "$fits/achromat.study" >out 2>err
 equal 'study run refuses a fit' "$? $(sed 's/.*: this/this/' err)" "2 this study is a fit; run it with 'cuvette fit'"
 

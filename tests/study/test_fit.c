@@ -1,96 +1,7 @@
 /* Tests of `cuvette fit`: known parameters are recovered from traced data, intervals cover the truth as often as they
  * say, sensitivities and tolerances have closed forms, rows are the same twice and after an interruption, and sections
  * with mistakes are refused with their place. */
-#include "random_stream.h"
-#include "scene/model/scene.h"
-#include "study/fit/fit.h"
-#include "study_fixture.h"
-
-#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
-#define DEGREE (M_PI / 180.0)
-
-/* --- fits of a folder --- */
-
-/* A slab of glass, one unit thick, and single rays upwards through it at 20, 40 and 60 degrees from its normal. */
-static const char slab_scene[] =
-    "render: {width: 16, height: 12, depth: 3}\n"
-    "camera: {position: [0, 3, -15], target: [0, 0, 0]}\n"
-    "background: {kind: uniform, color: [0.5, 0.6, 0.7]}\n"
-    "beams:\n"
-    "  a: {kind: bundle, position: [-1.71010, -4.69846, 0], direction: [0.342020143325669, 0.939692620785908, 0], "
-    "rays: 1, "
-    "branches: off}\n"
-    "  b: {kind: bundle, position: [-3.21394, -3.83022, 0], direction: [0.642787609686539, 0.766044443118978, 0], "
-    "rays: 1, "
-    "branches: off}\n"
-    "  c: {kind: bundle, position: [-4.33013, -2.5, 0], direction: [0.866025403784439, 0.5, 0], rays: 1, branches: "
-    "off}\n"
-    "solids:\n"
-    "  slab: {shape: box, transparency: 1, ior: 1.5, position: [0, 0.5, 0], size: [40, 1, 40], priority: 1}\n";
-
-#define SLAB_TARGETS(more)                                     \
-    "  targets:\n"                                             \
-    "    a: {quantity: spot_v, beam: a, value: 0, " more "}\n" \
-    "    b: {quantity: spot_v, beam: b, value: 0, " more "}\n" \
-    "    c: {quantity: spot_v, beam: c, value: 0, " more "}\n" \
-    "  screen: {position: [0, 5, 0]}\n"
-#define SLAB_HEAD "study: test\nscene: scene.yaml\nfit:\n  parameters: {slab.ior: {from: 1.1, to: 1.9}}\n"
-
-static status read_fit(const fixture *f, const char *scene_text, const char *text, fit **out, diagnostic *why)
-{
-    char path[400];
-    fixture_write(f, "scene.yaml", scene_text);
-    fixture_write(f, "test.study", text);
-    fixture_path(f, "test.study", path);
-    return fit_read(path, out, why);
-}
-
-static fit *fit_of(const fixture *f, const char *scene_text, const char *text)
-{
-    char message[DIAGNOSTIC_TEXT_MAX];
-    diagnostic why = {.what = ""};
-    fit *out = NULL;
-    if (read_fit(f, scene_text, text, &out, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
-    return out;
-}
-
-static job *new_job(void)
-{
-    job *j = NULL;
-    assert_int_equal(job_create(&(job_settings){.level = NULL}, &j, NULL), STATUS_OK);
-    return j;
-}
-
-static fit_result *solve(const fit *f, const char *results)
-{
-    char message[DIAGNOSTIC_TEXT_MAX];
-    diagnostic why = {.what = ""};
-    fit_result *r = calloc(1, sizeof *r);
-    fit_run *run = NULL;
-    assert_non_null(r);
-    status code = fit_run_begin(f, &(fit_options){.results = results}, &run, &why);
-    THEN(code, fit_search(run, r, &why));
-    THEN(code, fit_spread(run, r, &why));
-    if (code != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
-    fit_run_end(run);
-    return r;
-}
-
-/* The targets get the values measured at the truth. */
-static void aim(fit *f, job *j, const double *truth)
-{
-    double values[FIT_TARGETS_MAX];
-    assert_int_equal(fit_measure_at(f, j, truth, values, NULL), STATUS_OK);
-    for (size_t i = 0; i < f->target_count; i++)
-        f->targets[i].value = values[i];
-}
-
-static double normal(uint64_t *seed) /* Box and Muller, 1958 */
-{
-    return sqrt(-2.0 * log(1.0 - random_real(seed, 0, 1))) * cos(2.0 * M_PI * random_real(seed, 0, 1));
-}
+#include "fit_fixture.h"
 
 /* --- known parameters --- */
 
@@ -213,15 +124,6 @@ static void what_is_not_determined_has_no_interval(void **state)
 }
 
 /* --- sensitivities and tolerances --- */
-
-/* The lateral displacement of a ray by a plate of unit thickness (Hecht, Optics, problem 4.22), and its derivative by
- * the index. */
-static double plate_shift(double n, double angle, double *slope)
-{
-    const double s = sin(angle), c = cos(angle), root = sqrt(n * n - s * s);
-    *slope = s * c * n / (root * root * root);
-    return s * (1.0 - c / root);
-}
 
 static void derivatives_and_tolerances_have_closed_forms(void **state)
 {
@@ -581,6 +483,9 @@ static void mistakes_are_refused_with_their_place(void **state)
         {GOAL "  minimise: rays_total\n  method: bobyqa", "bobyqa needs two parameters", 6, 11},
         {GOAL "  minimise: rays_total\n  method: [direct, damped]", "damped least squares needs targets", 6, 20},
         {GOAL "  minimise: rays_total\n  evaluations: 1.5", "evaluations is not an integer", 6, 16},
+        {GOAL "  minimise: rays_total\n  interval: linear", "only targets give intervals", 6, 13},
+        {GOAL "  targets: {rays_total: {value: 1}}\n  interval: exact", "interval is neither linear nor profile", 6,
+         13},
         {GOAL "  minimise: rays_total\n  screen: {normal: [0, 0, 0]}", "the screen's normal is zero", 6, 20},
         {"repetitions: 3", "the study has no section fit", 1, 1},
     };
@@ -599,6 +504,37 @@ static void mistakes_are_refused_with_their_place(void **state)
         }
     }
     assert_int_equal(wrong, 0);
+}
+
+/* What only the first measurement shows, too. */
+static void quantities_without_a_value_are_refused_with_their_place(void **state)
+{
+    static const struct {
+        const char *targets, *what;
+        long column;
+    } bad[] = {
+        {"{rays_total: {value: 1}, lens.powr: {value: 1}}", "there is no visible cup named 'vessel'", 37},
+        {"{rays_total: {value: 1}, p: {quantity: radiance, pixel: [99, 0], value: 1}}",
+         "pixel 99,0 is outside the image", 51},
+        {"{rays_total: {value: 1}, f: {quantity: focus, beam: a, value: 1, screen: {position: [0, 5, 0]}}}",
+         "f cannot be measured at the start", 51},
+    };
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        char text[600];
+        diagnostic why = {.what = ""};
+        fit_result *r = calloc(1, sizeof *r);
+        fit_run *run = NULL;
+        snprintf(text, sizeof text, SLAB_HEAD "  targets: %s\n", bad[i].targets);
+        fit *f = fit_of(*state, slab_scene, text);
+        assert_int_equal(fit_run_begin(f, &(fit_options){.results = NULL}, &run, NULL), STATUS_OK);
+        assert_int_equal(fit_search(run, r, &why), STATUS_BAD_INPUT);
+        if (strcmp(why.what, bad[i].what) != 0 || why.line != 5 || why.column != bad[i].column ||
+            !strstr(why.file, "test.study"))
+            fail_msg("%zu: %s:%ld:%ld: %s", i, why.file, why.line, why.column, why.what);
+        fit_run_end(run);
+        free(r);
+        fit_destroy(f);
+    }
 }
 
 static void a_study_with_a_fit_is_not_swept(void **state)
@@ -632,6 +568,7 @@ int main(void)
         IN_FOLDER(a_fit_goes_on_where_it_stopped),
         IN_FOLDER(rows_of_something_else_are_not_used),
         IN_FOLDER(mistakes_are_refused_with_their_place),
+        IN_FOLDER(quantities_without_a_value_are_refused_with_their_place),
         IN_FOLDER(a_study_with_a_fit_is_not_swept),
     };
     return cmocka_run_group_tests_name("fit", tests, NULL, NULL);

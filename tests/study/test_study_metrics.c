@@ -70,7 +70,7 @@ static void realism_metrics_without_a_vessel_are_refused(void **state)
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
     diagnostic_text(&why, message, sizeof message);
-    assert_non_null(strstr(message, "bad.study: metrics of cell 0 cannot be saved: "));
+    assert_non_null(strstr(message, "bad.study:3:17: metrics of cell 0 cannot be saved: "));
     assert_non_null(strstr(message, "vessel"));
     assert_false(fixture_has(f, "results"));
 }
@@ -126,7 +126,7 @@ static void motion_metrics_without_a_slime_are_refused(void **state)
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
     diagnostic_text(&why, message, sizeof message);
-    assert_non_null(strstr(message, "bad.study: the motion of cell 0 cannot be saved: "));
+    assert_non_null(strstr(message, "bad.study:3:16: the motion of cell 0 cannot be saved: "));
 }
 
 int main(void)

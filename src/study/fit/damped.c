@@ -12,13 +12,17 @@ static double range_of(const fit *f, size_t i)
     return f->parameters[i].to - f->parameters[i].from;
 }
 
-status fit_jacobian(fit_run *r, const char *stage, const double *x, fit_derivatives *out, diagnostic *why)
+status fit_jacobian(fit_run *r, const char *stage, size_t held, const double *x, fit_derivatives *out, diagnostic *why)
 {
     const fit *f = fit_run_of(r);
     for (size_t i = 0; i < f->parameter_count; i++) {
         const fit_evaluation *at[2];
         const double bounds[2] = {f->parameters[i].from, f->parameters[i].to};
         out->at_bound[i] = false;
+        for (size_t k = 0; k < f->target_count; k++)
+            out->by[k][i] = 0.0;
+        if (i == held)
+            continue;
         for (int side = 0; side < 2; side++) {
             double moved[FIT_PARAMETERS_MAX];
             const double to = x[i] + (side ? 1.0 : -1.0) * f->step * range_of(f, i);
@@ -85,11 +89,14 @@ static void set_equations(const fit *f, const fit_evaluation *e, const fit_deriv
             out->a[i][k] = !out->free[i] || !out->free[k] ? i == k : out->a[i][k] / (out->scale[i] * out->scale[k]);
 }
 
-/* The point after a step with that damping; returns the largest step as a fraction of a range, 0 if there is none. */
-static double damped_step(const fit *f, const fit_evaluation *e, const normal_equations *n, double damping, double *x)
+/* The point after a step with that damping; returns the largest step as a fraction of a range, 0 if there is none.
+ * *gain: by how much the merit would fall if the targets were linear. */
+static double damped_step(const fit *f, const fit_evaluation *e, const normal_equations *n, double damping, double *x,
+                          double *gain)
 {
     fit_matrix a;
     double largest = 0.0;
+    *gain = 0.0;
     memcpy(a, n->a, sizeof a);
     for (size_t i = 0; i < f->parameter_count; i++)
         a[i][i] += damping;
@@ -101,20 +108,24 @@ static double damped_step(const fit *f, const fit_evaluation *e, const normal_eq
         for (size_t k = 0; k < f->parameter_count && n->free[i]; k++)
             step -= n->free[k] ? a[i][k] * n->gradient[k] / (n->scale[i] * n->scale[k]) : 0.0;
         x[i] = fmin(fmax(e->x[i] + step * range_of(f, i), p->from), p->to);
+        *gain -= step != 0.0 ? n->gradient[i] * step : 0.0;
         largest = fmax(largest, fabs(x[i] - e->x[i]) / range_of(f, i));
     }
     return largest;
 }
 
-/* Raises the damping until a step improves the merit. *moved: the size of the step; 0: none does. */
-static status improve(fit_run *r, const char *stage, const normal_equations *n, double *damping, fit_evaluation *best,
-                      double *moved, diagnostic *why)
+/* Raises the damping until a step improves the merit. *moved: the size of the step; 0: none does, or none is expected
+ * to by more than `enough`. */
+static status improve(fit_run *r, const char *stage, const normal_equations *n, double enough, double *damping,
+                      fit_evaluation *best, double *moved, diagnostic *why)
 {
     const fit *f = fit_run_of(r);
     for (; *damping < 1e12; *damping *= 10.0) {
-        double x[FIT_PARAMETERS_MAX];
+        double x[FIT_PARAMETERS_MAX], gain;
         const fit_evaluation *e = NULL;
-        *moved = damped_step(f, best, n, *damping, x);
+        *moved = damped_step(f, best, n, *damping, x, &gain);
+        if (*moved > 0.0 && gain < enough)
+            break;
         if (*moved == 0.0)
             continue;
         TRY(fit_evaluate(r, stage, x, &e, NULL, why));
@@ -131,7 +142,8 @@ static status improve(fit_run *r, const char *stage, const normal_equations *n, 
     return STATUS_OK;
 }
 
-status fit_damped(fit_run *r, const char *stage, fit_evaluation *best, const char **ended, diagnostic *why)
+status fit_damped(fit_run *r, const char *stage, size_t held, double enough, fit_evaluation *best, const char **ended,
+                  diagnostic *why)
 {
     const fit *f = fit_run_of(r);
     const size_t first = fit_run_evaluations(r);
@@ -144,9 +156,9 @@ status fit_damped(fit_run *r, const char *stage, fit_evaluation *best, const cha
             *ended = "it has made its number of evaluations";
             return STATUS_OK;
         }
-        TRY(fit_jacobian(r, stage, best->x, &d, why));
+        TRY(fit_jacobian(r, stage, held, best->x, &d, why));
         set_equations(f, best, &d, &n);
-        TRY(improve(r, stage, &n, &damping, best, &moved, why));
+        TRY(improve(r, stage, &n, enough, &damping, best, &moved, why));
     }
     return STATUS_OK;
 }

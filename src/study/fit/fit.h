@@ -60,6 +60,7 @@ extern const char *const fit_beam_words[FIT_BEAM_QUANTITY_COUNT]; /* "focus", ..
 typedef struct fit_measure {
     fit_source source;
     char *name;            /* "edges.left", "hits.rod", "focus", "radiance" */
+    long line, column;     /* of its name in the study file */
     const quantity *frame; /* FIT_FRAME */
     int solid;             /* for a quantity by solid; -1 */
     int pixel[2];          /* FIT_RADIANCE; -1: the whole film */
@@ -108,6 +109,7 @@ typedef struct fit {
     double precision; /* a stage ends when a step is below this fraction of every parameter's range */
     double step;      /* half the distance of central differences, as a fraction of the range */
     double worsening; /* of the merit, which defines tolerances; 0: the default (fit_worsening) */
+    bool linear;      /* intervals are linear; else of the profile (spread.c) */
     uint64_t seed;
     uint64_t identity; /* of what is measured: the scene, its files, parameters and quantities; not of the search */
 } fit;
@@ -170,16 +172,25 @@ typedef struct fit_result {
     double error[FIT_PARAMETERS_MAX]; /* standard error */
     double half[FIT_PARAMETERS_MAX];  /* half the 95 % interval, linear in the parameters */
     fit_matrix correlation;
+    bool has_profile[FIT_PARAMETERS_MAX];    /* false: not wanted, errors not known, or too many evaluations */
+    double profile[FIT_PARAMETERS_MAX][2];   /* ends of the 95 % interval of the profile */
+    bool open[FIT_PARAMETERS_MAX][2];        /* that end is only the parameter's bound */
+    size_t profile_lacking;                  /* parameters without a profile for want of evaluations */
+    fit_evaluation better;                   /* the best point that a profile found */
+    bool has_better;                         /* it is clearly better than best: the search missed it */
     double worsening;                        /* of the merit, for the tolerances; 0: none */
     double tolerance[FIT_PARAMETERS_MAX][2]; /* changes, down and up, at which it is reached; NaN: not within bounds */
 } fit_result;
 
 /* Lets the stages find the best point. The start must be measurable: otherwise STATUS_BAD_INPUT with the reason. */
 status fit_search(fit_run *r, fit_result *out, diagnostic *why);
-/* A stage of damped least squares, for targets only: improves *best. */
-status fit_damped(fit_run *r, const char *stage, fit_evaluation *best, const char **ended, diagnostic *why);
-/* The derivatives at x: evaluations at a step on both sides of each parameter. */
-status fit_jacobian(fit_run *r, const char *stage, const double *x, fit_derivatives *out, diagnostic *why);
+#define FIT_NONE_HELD SIZE_MAX
+/* Damped least squares, for targets only: improves *best. The parameter `held` stays. It ends when no step is expected
+ * to improve the merit by more than `enough`. */
+status fit_damped(fit_run *r, const char *stage, size_t held, double enough, fit_evaluation *best, const char **ended,
+                  diagnostic *why);
+/* The derivatives at x: evaluations at a step on both sides of each parameter; 0 by the one that is held. */
+status fit_jacobian(fit_run *r, const char *stage, size_t held, const double *x, fit_derivatives *out, diagnostic *why);
 /* The inverse of a symmetric positive definite matrix, whose diagonal is about 1, by Gauss and Jordan; false, with a
  * meaningless, if it is singular to working precision. */
 bool fit_invert(size_t n, fit_matrix a);

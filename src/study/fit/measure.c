@@ -236,6 +236,14 @@ static status measure_beams(const wanted_list *w, scene *s, isa level, diagnosti
 /* Measured one by one, since that ends with the metric; several metrics cost less together. */
 enum { METRICS_ALONE = 4 };
 
+/* The status of measuring a quantity; an error gets the place of its name. */
+static status at_quantity(const fit *f, const fit_measure *m, status code, diagnostic *why)
+{
+    if (code == STATUS_BAD_INPUT)
+        diagnostic_locate(why, f->s->path, m->line, m->column);
+    return code;
+}
+
 static status find_metric(const realism_report *report, const char *name, double *out, diagnostic *why)
 {
     for (int k = 0; k < report->count; k++)
@@ -247,7 +255,7 @@ static status find_metric(const realism_report *report, const char *name, double
                     "the scene has no metric '%.64s'", name);
 }
 
-static status measure_metrics(const wanted_list *w, const scene *s, isa level, diagnostic *why)
+static status measure_metrics(const fit *f, const wanted_list *w, const scene *s, isa level, diagnostic *why)
 {
     const bool together = count_of(w, FIT_REALISM) > METRICS_ALONE;
     realism_report report = {.count = 1};
@@ -258,8 +266,8 @@ static status measure_metrics(const wanted_list *w, const scene *s, isa level, d
         if (m->source != FIT_REALISM)
             continue;
         if (!together)
-            TRY(realism_measure_one(s, level, m->name, &report.value[0], why));
-        TRY(find_metric(&report, m->name, w->at[i].value, why));
+            TRY(at_quantity(f, m, realism_measure_one(s, level, m->name, &report.value[0], why), why));
+        TRY(at_quantity(f, m, find_metric(&report, m->name, w->at[i].value, why), why));
     }
     return STATUS_OK;
 }
@@ -292,13 +300,13 @@ static status read_frame(const fit_measure *m, const job_account *a, double *out
     return STATUS_OK;
 }
 
-static status measure_frame(const wanted_list *w, const scene *s, job *frames, diagnostic *why)
+static status measure_frame(const fit *f, const wanted_list *w, const scene *s, job *frames, diagnostic *why)
 {
     job_account a = {.result = NULL};
     status code = job_render(frames, s, NULL, &a, why);
     for (size_t i = 0; i < w->count; i++)
         if (w->at[i].m->source == FIT_FRAME || w->at[i].m->source == FIT_RADIANCE)
-            THEN(code, read_frame(w->at[i].m, &a, w->at[i].value, why));
+            THEN(code, at_quantity(f, w->at[i].m, read_frame(w->at[i].m, &a, w->at[i].value, why), why));
     job_account_release(&a);
     return code;
 }
@@ -311,9 +319,9 @@ static status measure_setting(const fit *f, job *frames, const double *x, size_t
     THEN(code, scene_check(s, why));
     THEN(code, job_load(frames, s, NULL, why));
     if (count_of(w, FIT_FRAME) + count_of(w, FIT_RADIANCE) > 0)
-        THEN(code, measure_frame(w, s, frames, why));
+        THEN(code, measure_frame(f, w, s, frames, why));
     if (count_of(w, FIT_REALISM) > 0)
-        THEN(code, measure_metrics(w, s, job_isa(frames), why));
+        THEN(code, measure_metrics(f, w, s, job_isa(frames), why));
     if (count_of(w, FIT_BEAMS) > 0)
         THEN(code, measure_beams(w, s, job_isa(frames), why)); /* last: it hides beams, which may light the scene */
     scene_destroy(s);

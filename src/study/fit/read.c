@@ -10,7 +10,8 @@
  *       colour: {quantity: focus, beam: blue, minus: {quantity: focus, beam: red}, value: 0, weight: 4}
  *     minimise: {quantity: spot_rms, beam: [axis, edge]}    or maximise; instead of targets
  *     screen: {position: [0, 97, 0], normal: [0, 1, 0]}     of quantities of beams
- *     method: [direct, nelder-mead]    evaluations: 500    precision: 1e-9    step: 1e-4    worsening: 1    seed: 1 */
+ *     method: [direct, nelder-mead]    evaluations: 500    precision: 1e-9    step: 1e-4    worsening: 1    seed: 1
+ *     interval: profile                or linear */
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/number.h"
@@ -108,6 +109,21 @@ static status check_ends(const fit_reading *r, size_t parameter, const node *map
     return STATUS_OK;
 }
 
+/* *out: whether it is the first word; unchanged if it is missing. */
+static status read_either(const fit_reading *r, const node *map, const char *key, const char *first, const char *second,
+                          bool *out)
+{
+    const node *n = node_get(map, key);
+    char remedy[64];
+    if (!n)
+        return STATUS_OK;
+    snprintf(remedy, sizeof remedy, "write %s or %s", first, second);
+    *out = n->kind == NODE_SCALAR && strcmp(n->text, first) == 0;
+    return *out || (n->kind == NODE_SCALAR && strcmp(n->text, second) == 0)
+               ? STATUS_OK
+               : WRONG(r, n, remedy, "%s is neither %s nor %s", key, first, second);
+}
+
 static status read_parameter(const fit_reading *r, const node *name, const node *map)
 {
     static const char *const keys[] = {"from", "to", "start", "sets", "reciprocal"};
@@ -118,7 +134,6 @@ static status read_parameter(const fit_reading *r, const node *name, const node 
         return WRONG(r, name, "use at most 16 parameters", "the fit has more than %d parameters", FIT_PARAMETERS_MAX);
     const size_t index = f->parameter_count++;
     fit_parameter *p = &f->parameters[index];
-    const node *reciprocal = node_get(map, "reciprocal");
     if (!(p->name = strdup(name->text)))
         return out_of_memory(r->why);
     for (int i = 0; i < 2; i++) {
@@ -129,10 +144,7 @@ static status read_parameter(const fit_reading *r, const node *name, const node 
     }
     if (!(p->from < p->to))
         return WRONG(r, map, "set from to less than to", "from %g is not less than to %g", p->from, p->to);
-    if (reciprocal && reciprocal->kind == NODE_SCALAR && strcmp(reciprocal->text, "on") == 0)
-        p->reciprocal = true;
-    else if (reciprocal && (reciprocal->kind != NODE_SCALAR || strcmp(reciprocal->text, "off") != 0))
-        return WRONG(r, reciprocal, "write on or off", "reciprocal is neither on nor off");
+    TRY(read_either(r, map, "reciprocal", "on", "off", &p->reciprocal));
     TRY(read_drives(r, p, name, node_get(map, "sets")));
     TRY(find_start(f, p, r->why));
     TRY(fit_read_real(r, map, "start", p->from, p->to, &p->start));
@@ -186,6 +198,9 @@ static status read_search(const fit_reading *r, const node *root)
     TRY(fit_read_real(r, root, "precision", 1e-15, 0.1, &f->precision));
     TRY(fit_read_real(r, root, "step", 1e-9, 0.1, &f->step));
     TRY(fit_read_real(r, root, "worsening", 1e-300, 1e300, &f->worsening));
+    TRY(read_either(r, root, "interval", "linear", "profile", &f->linear));
+    if (node_get(root, "interval") && f->goal != FIT_TARGETS)
+        return WRONG(r, node_get(root, "interval"), "remove it", "only targets give intervals");
     f->evaluations = (long)evaluations;
     f->seed = (uint64_t)seed;
     return STATUS_OK;
@@ -218,7 +233,7 @@ static status read_goal(const fit_reading *r, const node *root)
 static status read_section(fit_reading *r, const node *root)
 {
     static const char *const keys[] = {"parameters",  "targets",   "minimise", "maximise",  "screen", "method",
-                                       "evaluations", "precision", "step",     "worsening", "seed"};
+                                       "evaluations", "precision", "step",     "worsening", "seed",   "interval"};
     const char *const form = "write {liquid.ior: {from: 1.2, to: 1.6, start: 1.4}}";
     r->f->setting_count = 1;
     TRY(fit_check_map(r, root, "fit", "write parameters: and targets: below it", keys, COUNT(keys)));

@@ -269,6 +269,7 @@ static status read_measure(const fit_reading *r, const node *name, const node *m
     m->at = r->at, m->normal = r->normal;
     if (!word || word->kind != NODE_SCALAR)
         return WRONG(r, map, "write {quantity: spot_rms}", "there is no quantity");
+    m->line = word->line, m->column = word->column;
     if (!(m->name = strdup(word->text)))
         return out_of_memory(r->why);
     TRY(find_quantity(r, word, m));

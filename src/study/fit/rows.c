@@ -38,7 +38,7 @@ static const row_column leading[] = {
     {"study", "", "name of the study"},
     {"fit", "", "hash of what is measured: the scene, its files, the parameters and the quantities, 16 hex digits"},
     {"evaluation", "", "running number of the row, from 1"},
-    {"stage", "", "what requested it: start, a method of the search, derivative or tolerance"},
+    {"stage", "", "what requested it: start, a method of the search, derivative, profile or tolerance"},
 };
 static const row_column trailing[] = {
     {"merit", "",

@@ -137,10 +137,17 @@ static status start_error(const fit *f, const fit_evaluation *e, const diagnosti
     size_t lacking = 0;
     while (lacking + 1 < f->target_count && !isnan(e->values[lacking]))
         lacking++;
-    return diagnose_at(why, f->s->path, STATUS_BAD_INPUT,
-                       reason->remedy[0] ? reason->remedy : "choose another start, at which rays reach the screen",
-                       "%.64s cannot be measured at the start%s%.400s", f->targets[lacking].name,
-                       reason->what[0] ? ": " : "", reason->what);
+    if (reason->line > 0) { /* one quantity's own, with its place */
+        if (why)
+            *why = *reason;
+        return STATUS_BAD_INPUT;
+    }
+    diagnose(why, STATUS_BAD_INPUT,
+             reason->remedy[0] ? reason->remedy : "choose another start, at which rays reach the screen",
+             "%.64s cannot be measured at the start%s%.400s", f->targets[lacking].name, reason->what[0] ? ": " : "",
+             reason->what);
+    diagnostic_locate(why, f->s->path, f->targets[lacking].of.line, f->targets[lacking].of.column);
+    return STATUS_BAD_INPUT;
 }
 
 status fit_search(fit_run *r, fit_result *out, diagnostic *why)
@@ -157,8 +164,9 @@ status fit_search(fit_run *r, fit_result *out, diagnostic *why)
     search s = {.r = r, .f = f, .best = *e, .worst = e->merit, .why = why};
     for (size_t i = 0; i < f->stage_count; i++) {
         s.method = f->stages[i];
-        TRY(s.method == FIT_DAMPED ? fit_damped(r, fit_method_words[FIT_DAMPED], &s.best, &out->ended, why)
-                                   : run_stage(&s, &out->ended));
+        TRY(s.method == FIT_DAMPED
+                ? fit_damped(r, fit_method_words[FIT_DAMPED], FIT_NONE_HELD, 0.0, &s.best, &out->ended, why)
+                : run_stage(&s, &out->ended));
     }
     out->best = s.best;
     return STATUS_OK;

@@ -233,25 +233,26 @@ static status check_metrics(void *context, const study *s, size_t cell, scene *s
     const status code = realism_check(setting, s->keep_curves, &bad);
     if (code == STATUS_OK)
         return code;
-    return diagnose_at(why, s->path, code, bad.remedy, "%s of cell %zu cannot be saved: %s",
-                       s->keep_curves ? "curves" : "metrics", cell, bad.what);
+    return diagnose(why, code, bad.remedy, "%s of cell %zu cannot be saved: %s", s->keep_curves ? "curves" : "metrics",
+                    cell, bad.what);
 }
 
 static status check_motion(void *context, const study *s, size_t cell, scene *setting, diagnostic *why)
 {
-    (void)context;
+    (void)context, (void)s;
     if (scene_moves(setting))
         return STATUS_OK;
-    return diagnose_at(why, s->path, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'",
-                       "the motion of cell %zu cannot be saved: nothing moves in it", cell);
+    return diagnose(why, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'",
+                    "the motion of cell %zu cannot be saved: nothing moves in it", cell);
 }
 
-status keep_check_tables(const study *s, diagnostic *why)
+status keep_check_tables(const study *s, const char **key, diagnostic *why)
 {
-    status code = STATUS_OK;
+    *key = s->keep_curves ? "curves" : "metrics";
     if (s->keep_metrics || s->keep_curves)
-        code = grid_each_cell(s, check_metrics, NULL, why);
-    return code == STATUS_OK && s->keep_motion ? grid_each_cell(s, check_motion, NULL, why) : code;
+        TRY(grid_each_cell(s, check_metrics, NULL, why));
+    *key = "motion";
+    return s->keep_motion ? grid_each_cell(s, check_motion, NULL, why) : STATUS_OK;
 }
 
 /* --- writing --- */

@@ -11,8 +11,8 @@
 #include "job/account.h"
 #include "study/study.h"
 
-/* Checks that the tables kept by the study can be measured in every cell. Errors are located in the study file. */
-status keep_check_tables(const study *s, diagnostic *why);
+/* Checks that the tables kept by the study can be measured in every cell. *key: the key of `keep` that failed. */
+status keep_check_tables(const study *s, const char **key, diagnostic *why);
 
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);

@@ -241,6 +241,17 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     return STATUS_OK;
 }
 
+/* An error is located at the key that asks for the table. */
+static status check_kept(const study *s, const node *keep, diagnostic *why)
+{
+    const char *key;
+    const status code = keep_check_tables(s, &key, why);
+    const node *at = node_get(keep, key);
+    if (code == STATUS_BAD_INPUT && at)
+        diagnostic_locate(why, s->path, at->line, at->column);
+    return code;
+}
+
 /* Reads the scene file: its text, for runs.json, and its model. Errors in it name the scene file. */
 static status read_scene(study *s, const document *d, const node *root, const study_guard *guard, diagnostic *why)
 {
@@ -297,8 +308,6 @@ static status read_root(study *s, const document *d, const study_guard *guard, b
     static const char *const keys[] = {"study",       "title",     "scene",     "set",     "grid",  "reference",
                                        "repetitions", "processes", "disturbed", "warmups", "order", "keep"};
     static const char *const fit_keys[] = {"study", "title", "scene", "set", "fit"};
-    static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
-                                                                        keep_check_tables};
     const node *root = document_root(d);
     if (!root || root->kind != NODE_MAP) {
         if (root)
@@ -321,8 +330,9 @@ static status read_root(study *s, const document *d, const study_guard *guard, b
     TRY(read_scene(s, d, root, guard, why));
     TRY(read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why));
     TRY(read_reference(s, d, node_get(root, "reference"), why));
-    for (size_t i = 0; i < COUNT(checks); i++)
-        TRY(checks[i](s, why));
+    TRY(grid_check_cells(s, why));
+    TRY(reference_check(s, why));
+    TRY(check_kept(s, node_get(root, "keep"), why));
     if (guard) {
         TRY(guard->may_load(guard->context, s->base, why));
         TRY(grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why));
