@@ -572,8 +572,8 @@ typedef struct cuvette_node {
     const char *solid_name, *face_name; /* "vessel", "outer side"; NULL without a hit */
     double n_before, n_after;
     double cos_in, cos_out;  /* cosines of the angles of incidence and refraction; cos_out is 0 if there is none */
-    double R_s, R_p, R;      /* power reflectances, with coating */
-    double T;                /* power transmittance of the surface, with coating and transparency */
+    double R_s, R_p, R;      /* power reflectances, with reflectivity */
+    double T;                /* power transmittance of the surface, with reflectivity and transparency */
     double gain_classic;     /* factor of the radiance from behind: T, for either value of render.radiance ... */
     double gain_basic;       /* ... and T (n_before / n_after)^2 */
     double length_m;         /* length of the ray, metres */

@@ -249,12 +249,12 @@ inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
     if (is_unlit(s))
         return inert_set("render.layer=albedo");
-    material coated = *m;
-    coated.diffuse = 0.7;
-    if (shows_color(s, &coated))
+    material lit = *m;
+    lit.diffuse = 0.7;
+    if (shows_color(s, &lit))
         return inert_set("%s.diffuse=0.7", name);
-    coated.ambient = 0.5;
-    if (shows_color(s, &coated))
+    lit.ambient = 0.5;
+    if (shows_color(s, &lit))
         return inert_set("%s.ambient=0.5", name);
     return is_path(s) ? inert_set("%s.diffuse=0.7 and %s.transparency=0", name, name)
                       : inert_set("background.ambient=1,1,1 and %s.ambient=0.5", name);

@@ -160,8 +160,8 @@ bool no_highlight(const inert_case *c)
 
 /* --- reflection --- */
 
-/* Weights are not negative: if the film is unchanged with full reflection, it is unchanged with less. A coating reduces
- * transmission by what it adds to reflection; if neither 1/2 nor 1 changes the film, both paths are black. */
+/* Weights are not negative: if the film is unchanged with full reflection, it is unchanged with less. A half mirror
+ * reduces transmission by what it adds to reflection; if neither 1/2 nor 1 changes the film, both paths are black. */
 static bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
@@ -214,9 +214,9 @@ bool no_reflectivity(const inert_case *c)
     const scene *s = c->s;
     if (layered_reflectivity(c))
         return true;
-    /* The coating of a transparent surface also attenuates shadow rays. */
-    const bool coats = !material_is_opaque(c->m) && !scene_has_constant_weights(&s->render);
-    if (coats)
+    /* A half mirror also attenuates shadow rays. */
+    const bool halves = !material_is_opaque(c->m) && !scene_has_constant_weights(&s->render);
+    if (halves)
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
     if (is_drawn(s) && !material_is_opaque(c->m))
         return false;

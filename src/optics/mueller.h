@@ -183,12 +183,12 @@ static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* A coating that returns all of the light that would be transmitted, unpolarised. Its matrix has the first row of
+/* A half mirror that returns all of the light that would be transmitted, unpolarised. Its matrix has the first row of
  * refraction's matrix and zeros elsewhere, so that returned and transmitted light add up for every polarisation of the
  * incident light. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence sees
- * 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. The caller scales the result by the coating's fraction c. */
-static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
-                                      vec3 reflected)
+ * 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. The caller scales the result by its fraction c. */
+static inline stokes analyser_half_mirror(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
+                                          vec3 reflected)
 {
     const stokes intensity = {row.i, 0.0, 0.0, 0.0};
     return analyser_across(intensity, d, n, reflected, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));

@@ -152,7 +152,7 @@ void arrange_bare(scene *s)
         if (material_is_opaque(m))
             continue;
         m->color = vec3_make(1.0, 1.0, 1.0);
-        m->reflectivity -= material_coating(m, &s->render);
+        m->reflectivity -= material_reflectivity(m, &s->render);
         m->film_thickness_nm = 0.0;
         m->sheet = SHEET_NONE;
     }

@@ -73,9 +73,10 @@ static void put_reflection(const solids *v, int r, const material *m)
         fputs(" }", out);
     } else if (export_is_clear(v->to.w, r) && !scene_has_constant_weights(s)) {
         if (m->reflectivity > 0.0)
-            export_note(v->to.w->notes, export_name(v->to.w, r), "a coating does not dim the shadow of a clear solid");
+            export_note(v->to.w->notes, export_name(v->to.w, r),
+                        "a half mirror does not dim the shadow of a clear solid");
         pov_named(&v->to, "reflection {",
-                  m->reflectivity); /* a coating reflects its share of what the interface lets in */
+                  m->reflectivity); /* a half mirror reflects a fraction of what the interface lets in */
         fputs(", 1 fresnel on } conserve_energy", out);
     } else if (m->reflectivity > 0.0) {
         pov_named(&v->to, "reflection {", m->reflectivity);

@@ -42,12 +42,12 @@ typedef struct ray_hit {
     int from, to;       /* media before and behind the surface */
     double n_from, n_to;
     double cos_i, cos_t; /* cos_t: 0 under total internal reflection and at an opaque surface */
-    /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
+    /* power reflectances of the interface with its half mirror; for an opaque surface or simple transmission, its
      * reflectivity; for a metal or a thin film, at the tree's wavelength; at a crystal all are equal, the fraction of
      * this ray's light that is reflected */
     double R_s, R_p, R;
     bool tir;
-    double T; /* power transmittance of the surface, with coating and transparency; 0 for an opaque one */
+    double T; /* power transmittance of the surface, with half mirror and transparency; 0 for an opaque one */
     double gain_classic, gain_basic; /* factor of radiance from behind: T, and T (n_from / n_to)^2 */
     double path_length_m;            /* length of the ray to this hit in metres: t render.unit_m */
     double transmittance[3];         /* of the medium over this length (Beer and Lambert), RGB */

@@ -207,9 +207,9 @@ static bool read_hit(const probe *p, ray_node *node)
     layer_losses lost = {0.0, 0.0, 0.0};
     if (surface_is_layered(t))
         lost = read_layers(p, h);
-    const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->frame_plan->render);
-    h->R_s += (1.0 - h->R_s - lost.s) * coating, h->R_p += (1.0 - h->R_p - lost.p) * coating,
-        h->R += (1.0 - h->R - lost.mean) * coating;
+    const double reflectivity = opaque ? 0.0 : material_reflectivity(&t->surface.mat->surface, &p->frame_plan->render);
+    h->R_s += (1.0 - h->R_s - lost.s) * reflectivity, h->R_p += (1.0 - h->R_p - lost.p) * reflectivity,
+        h->R += (1.0 - h->R - lost.mean) * reflectivity;
     if (opaque) {
         if (!surface_is_layered(t))
             h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;

@@ -13,7 +13,7 @@
 /* Whether the surface is visible even between equal media. */
 static bool shows_itself(const scene *s, const material *m)
 {
-    return m->emission > 0.0 || material_coating(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
+    return m->emission > 0.0 || material_reflectivity(m, &s->render) > 0.0 || material_is_layered(m, &s->render);
 }
 
 /* Whether both are crystals with equal extraordinary index and axis in the world, or neither is a crystal. */
@@ -37,9 +37,9 @@ static bool has_own_medium(const scene *s, const solid *one)
 }
 
 /* The medium of a solid. Under Fresnel weights, solids of equal refractive index are one medium, and a boundary between
- * them is no interface unless it is coated, in part too, has a thin film, or emits light; crystals must also be alike.
- * With constant weights, as in the published rod report, every surface reflects whatever its index. laws: dispersion
- * laws by solid; [solid_count] is the surrounding medium's. */
+ * them is no interface unless it is a half mirror, in part too, has a thin film, or emits light; crystals must also be
+ * alike. With constant weights, as in the published rod report, every surface reflects whatever its index. laws:
+ * dispersion laws by solid; [solid_count] is the surrounding medium's. */
 static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
@@ -354,7 +354,7 @@ static bool add_roughness(const scene *s, plan *p, const material *m)
     const double alpha = material_roughness(m, &s->render);
     p->rough |= alpha > 0.0;
     return !(alpha > 0.0) || !s->render.energy_compensation ||
-           rough_energy_add(&p->energy, alpha, material_coating(m, &s->render), material_is_opaque(m));
+           rough_energy_add(&p->energy, alpha, material_reflectivity(m, &s->render), material_is_opaque(m));
 }
 
 /* Materials, refractive indices, absorption and shading materials, by priority index. shared: region_materials_make. */

@@ -65,8 +65,9 @@ bool region_materials_make(const scene *s, const solid *owner, const material *s
 static double surface_passes(const scene *s, const material *m)
 {
     const double layers = material_is_layered(m, &s->render) ? material_layers_pass(m) : 1.0;
-    return material_roughness(m, &s->render) > 0.0 ? 0.0
-                                                   : m->transparency * (1.0 - material_coating(m, &s->render)) * layers;
+    return material_roughness(m, &s->render) > 0.0
+               ? 0.0
+               : m->transparency * (1.0 - material_reflectivity(m, &s->render)) * layers;
 }
 
 bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot)

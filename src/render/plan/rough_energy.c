@@ -22,7 +22,7 @@ static double sent_by_facet(const rough_finish *finish, const double index[2], i
     const double i_m = vec3_dot(i, m);
     const vec3 mirrored = vec3_sub(vec3_scale(m, 2.0 * i_m), i);
     const fresnel f = fresnel_dielectric(lesser(i_m, 1.0), index[side], index[1 - side]);
-    const double R = finish->opaque ? 1.0 : f.R + (1.0 - f.R) * finish->coating;
+    const double R = finish->opaque ? 1.0 : f.R + (1.0 - f.R) * finish->reflectivity;
     double sent = mirrored.z > 0.0 ? R * ggx_masking(finish->alpha, mirrored) : 0.0;
     if (finish->opaque || f.total)
         return sent;
@@ -73,11 +73,11 @@ static void fill_table(const rough_finish *finish, double ratio, energy_table *o
     out->passed = 0.0;
     for (int k = 1; k <= ENERGY_STEPS; k++) {
         const double x = (double)k / ENERGY_STEPS, R = fresnel_dielectric(x * x, 1.0, ratio).R;
-        out->passed += weight_of(k) * (1.0 - R) * (1.0 - finish->coating);
+        out->passed += weight_of(k) * (1.0 - R) * (1.0 - finish->reflectivity);
     }
 }
 
-bool rough_energy_add(rough_energy **all, double alpha, double coating, bool opaque)
+bool rough_energy_add(rough_energy **all, double alpha, double reflectivity, bool opaque)
 {
     if (!*all) {
         if (!(*all = calloc(1, sizeof **all)))
@@ -88,7 +88,7 @@ bool rough_energy_add(rough_energy **all, double alpha, double coating, bool opa
             return false;
         }
     }
-    if (rough_energy_find(*all, alpha, coating, opaque))
+    if (rough_energy_find(*all, alpha, reflectivity, opaque))
         return true;
     rough_energy *e = *all;
     energy_table *tables = calloc(opaque ? 1 : ENERGY_RATIOS, sizeof *tables);
@@ -96,7 +96,7 @@ bool rough_energy_add(rough_energy **all, double alpha, double coating, bool opa
         free(tables);
         return false;
     }
-    e->finishes[e->count++] = (rough_finish){alpha, coating, opaque, tables};
+    e->finishes[e->count++] = (rough_finish){alpha, reflectivity, opaque, tables};
     return true;
 }
 
@@ -111,11 +111,11 @@ void rough_energy_destroy(rough_energy *all)
     free(all);
 }
 
-const rough_finish *rough_energy_find(const rough_energy *all, double alpha, double coating, bool opaque)
+const rough_finish *rough_energy_find(const rough_energy *all, double alpha, double reflectivity, bool opaque)
 {
     for (int i = 0; i < all->count; i++) {
         const rough_finish *f = &all->finishes[i];
-        if (f->alpha == alpha && f->coating == coating && f->opaque == opaque)
+        if (f->alpha == alpha && f->reflectivity == reflectivity && f->opaque == opaque)
             return f;
     }
     return NULL;

@@ -33,9 +33,9 @@ typedef struct energy_table {
     double lost[2][ENERGY_STEPS + 1], mean[2], passed;
 } energy_table;
 
-/* The rough surfaces that share tables. coating: see material_coating. */
+/* The rough surfaces that share tables. reflectivity: see material_reflectivity. */
 typedef struct rough_finish {
-    double alpha, coating;
+    double alpha, reflectivity;
     bool opaque;
     energy_table *tables; /* ENERGY_RATIOS tables; one for an opaque surface */
 } rough_finish;
@@ -48,9 +48,9 @@ typedef struct rough_energy {
 } rough_energy;
 
 /* Adds a finish unless it is present, and creates *all if it is NULL. Returns false when out of memory. */
-bool rough_energy_add(rough_energy **all, double alpha, double coating, bool opaque);
+bool rough_energy_add(rough_energy **all, double alpha, double reflectivity, bool opaque);
 void rough_energy_destroy(rough_energy *all);
-const rough_finish *rough_energy_find(const rough_energy *all, double alpha, double coating, bool opaque);
+const rough_finish *rough_energy_find(const rough_energy *all, double alpha, double reflectivity, bool opaque);
 
 /* The lost light at a point of the surface, for light from a medium of index n_from at a cosine; n_to is unused if
  * opaque. */

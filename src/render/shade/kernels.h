@@ -23,8 +23,8 @@ typedef struct shade_kernels {
     void (*direct)(const material *m, const light *lamp, const group *g, lit_group *lit);
     /* Multiplies the light in lit by the fraction that the cone emits towards each point. */
     void (*spot)(const light_cone *c, bool soft, const group *g, lit_group *lit);
-    /* Reflected and refracted directions with Fresnel weights at a clear surface, including its coating, which reflects
-     * a fraction of what would be transmitted: R' = R + (1 - R) reflectivity. */
+    /* Reflected and refracted directions with Fresnel weights at a clear surface, also a half mirror, which reflects a
+     * fraction of what would be transmitted: R' = R + (1 - R) reflectivity. */
     void (*fresnel_branches)(const material *m, const group *g, branch_group *b);
     /* fresnel_branches with the material's constant weights, also for opaque surfaces. */
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);

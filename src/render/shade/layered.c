@@ -46,7 +46,7 @@ static double wavelength_of(const tracer *t, int k)
 }
 
 /* Weights from the surface's table of colours; under total reflection, all light is reflected. */
-static void branch_by_color(tracer *t, const material *m, double coating, int k)
+static void branch_by_color(tracer *t, const material *m, double reflectivity, int k)
 {
     const group *g = &t->surface.gathered;
     layered_work *w = t->layered;
@@ -55,15 +55,15 @@ static void branch_by_color(tracer *t, const material *m, double coating, int k)
     const bool opaque = w->surface->opaque;
     const layered_colors c = layered_colors_at(w->surface, w->curves[k], w->inward[k], cos_i, g->n_from[k], g->n_to[k]);
     const vec3 R = c.reflected, rest = c.transmitted,
-               T = opaque ? rest : vec3_scale(rest, m->transparency * (1.0 - coating));
-    const double back = opaque ? 0.0 : coating;
+               T = opaque ? rest : vec3_scale(rest, m->transparency * (1.0 - reflectivity));
+    const double back = opaque ? 0.0 : reflectivity;
     w->rr[k] = R.x + rest.x * back, w->rg[k] = R.y + rest.y * back, w->rb[k] = R.z + rest.z * back;
     w->tr[k] = T.x, w->tg[k] = T.y, w->tb[k] = T.z;
     b->reflect[k] = (w->rr[k] + w->rg[k] + w->rb[k]) / 3.0;
     b->refract[k] = (T.x + T.y + T.z) / 3.0;
 }
 
-static void branch_at_wavelength(tracer *t, const material *m, double coating, int k)
+static void branch_at_wavelength(tracer *t, const material *m, double reflectivity, int k)
 {
     const group *g = &t->surface.gathered;
     const layered_surface *s = t->layered->surface;
@@ -75,20 +75,20 @@ static void branch_at_wavelength(tracer *t, const material *m, double coating, i
                total = !s->opaque && fresnel_dielectric(cos_i, g->n_from[k], g->n_to[k]).total;
     const sp_response r = sp_response_of(a.r_s, a.r_p), through = sp_response_of(a.t_s, a.t_p);
     const double R = total && !absorbs ? 1.0 : lesser(r.mean, 1.0), T = absorbs ? through.mean : 1.0 - R;
-    b->reflect[k] = s->opaque ? R : R + T * coating;
-    b->refract[k] = s->opaque ? 0.0 : m->transparency * T * (1.0 - coating);
+    b->reflect[k] = s->opaque ? R : R + T * reflectivity;
+    b->refract[k] = s->opaque ? 0.0 : m->transparency * T * (1.0 - reflectivity);
     if (t->target.frame_plan->render.polarisation)
-        polarised_layered(t, k, r, through, coating, m->transparency);
+        polarised_layered(t, k, r, through, reflectivity, m->transparency);
 }
 
 void layered_branches(tracer *t, const material *m)
 {
-    const double coating = material_coating(m, &t->target.frame_plan->render);
+    const double reflectivity = material_reflectivity(m, &t->target.frame_plan->render);
     for (int k = 0; k < t->surface.gathered.count; k++)
         if (t->layered->colored)
-            branch_by_color(t, m, coating, k);
+            branch_by_color(t, m, reflectivity, k);
         else
-            branch_at_wavelength(t, m, coating, k);
+            branch_at_wavelength(t, m, reflectivity, k);
 }
 
 void layered_turn_back(tracer *t, int k)

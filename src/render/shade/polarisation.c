@@ -28,7 +28,7 @@ static double split_stokes(stokes s, double *q, double *u, double *v)
     return fraction;
 }
 
-void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
+void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double reflectivity,
                        double transparency)
 {
     const group *g = &t->surface.gathered;
@@ -39,13 +39,13 @@ void polarised_layered(tracer *t, int k, sp_response reflected, sp_response tran
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
     const vec3 back = vec3_make(b->rx[k], b->ry[k], b->rz[k]), ahead = vec3_make(b->tx[k], b->ty[k], b->tz[k]);
     stokes r = analyser_across(row, d, n, back, reflected);
-    if (coating > 0.0) /* as analyser_coating */
-        r = stokes_add(r, analyser_across(intensity, d, n, back, transmitted), coating);
+    if (reflectivity > 0.0) /* as analyser_half_mirror */
+        r = stokes_add(r, analyser_across(intensity, d, n, back, transmitted), reflectivity);
     b->reflect[k] = split_stokes(r, &p->rq[k], &p->ru[k], &p->rv[k]);
     if (b->refract[k] == 0.0)
         return;
     const stokes s = analyser_across(row, d, n, ahead, transmitted);
-    b->refract[k] = transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+    b->refract[k] = transparency * (1.0 - reflectivity) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
 }
 
 /* Called after the branches' directions and unpolarised weights are computed. */
@@ -54,7 +54,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
     const group *g = &t->surface.gathered;
     branch_group *b = &t->surface.branches;
     polar_group *p = &t->surface.polar;
-    const double coating = material_coating(m, &t->target.frame_plan->render);
+    const double reflectivity = material_reflectivity(m, &t->target.frame_plan->render);
     for (int k = 0; k < g->count; k++) {
         const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};
         const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
@@ -68,13 +68,14 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
             continue;
         }
         stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);
-        if (coating > 0.0)
-            r = stokes_add(r, analyser_coating(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected), coating);
+        if (reflectivity > 0.0)
+            r = stokes_add(r, analyser_half_mirror(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected),
+                           reflectivity);
         b->reflect[k] = split_stokes(r, &p->rq[k], &p->ru[k], &p->rv[k]);
         if (b->refract[k] == 0.0) /* total reflection: there is no refracted direction */
             continue;
         const stokes s = analyser_refract(row, d, n, cos_i, g->n_from[k], g->n_to[k], refracted);
-        b->refract[k] = m->transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+        b->refract[k] = m->transparency * (1.0 - reflectivity) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
     }
 }
 

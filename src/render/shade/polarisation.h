@@ -30,7 +30,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque);
 /* Sets the Stokes vector of shadow ray `at` to the vector of a branch of ray k along the same direction. */
 void polarised_shadow(tracer *t, int k, bool refracted, int at);
 /* Applies a layered surface to ray k, with its responses in reflection and transmission. */
-void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double coating,
+void polarised_layered(tracer *t, int k, sp_response reflected, sp_response transmitted, double reflectivity,
                        double transparency);
 
 /* --- lamps --- */

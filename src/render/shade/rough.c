@@ -30,7 +30,8 @@ void rough_begin(const tracer *t, double alpha, bool opaque, rough_surface *r)
     const material *m = &t->surface.mat->surface;
     r->alpha = alpha;
     r->opaque = opaque;
-    r->finish = all ? rough_energy_find(all, alpha, material_coating(m, &t->target.frame_plan->render), opaque) : NULL;
+    r->finish =
+        all ? rough_energy_find(all, alpha, material_reflectivity(m, &t->target.frame_plan->render), opaque) : NULL;
     for (int k = 0; k < g->count; k++) {
         r->n[k] = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
         r->cos_i[k] = g->points.cos_i[k];

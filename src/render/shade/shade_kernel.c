@@ -216,13 +216,13 @@ static int64_t without_padding(const group *g, int64_t among_padded)
 
 static void fresnel_branches(const material *m, const group *g, branch_group *restrict b)
 {
-    const double transparency = m->transparency, coating = m->reflectivity;
+    const double transparency = m->transparency, reflectivity = m->reflectivity;
     const int count = g->padded;
     int64_t total = 0;
     /* VECTORISE */
     for (int i = 0; i < count; i++) {
         fresnel f = branch_directions(g, i, b);
-        const double R = f.R + (1.0 - f.R) * coating;
+        const double R = f.R + (1.0 - f.R) * reflectivity;
         b->reflect[i] = R;
         b->refract[i] = transparency * (1.0 - R);
         total -= f.total;

@@ -37,11 +37,11 @@ typedef struct material {
     vec3 color; /* C, linear RGB; for transparent solids also the transmittance of the medium over tint_distance */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
     double emission;                              /* k_e: the surface emits k_e C in all directions */
-    double reflectivity; /* for constant weights, simple transmission and opaque materials; under Fresnel weights the
-                            coating of a transparent material */
-    double transparency; /* 0: opaque; else the fraction of the refracted light that crosses an interface (constant
+    double reflectivity;      /* for constant weights, simple transmission and opaque materials; under Fresnel weights a
+                            transparent surface is a half mirror */
+    double transparency;      /* 0: opaque; else the fraction of the refracted light that crosses an interface (constant
                             weights: of the incident) */
-    double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
+    double ior;               /* relative to vacuum, if medium is MEDIUM_IOR */
     double extraordinary_ior; /* of a uniaxial crystal, for the field along its optic axis; 0: isotropic */
     vec3 optic_axis;          /* in the solid's own frame, of any length */
     double extinction;        /* of an opaque material with medium MEDIUM_IOR: k of its complex index ior - i k */

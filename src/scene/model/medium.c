@@ -442,7 +442,7 @@ vec3 material_extinction(const material *m, double unit_m)
         absorbed, vec3_make(material_tint(m, m->color.x), material_tint(m, m->color.y), material_tint(m, m->color.z)));
 }
 
-double material_coating(const material *m, const render_settings *r)
+double material_reflectivity(const material *m, const render_settings *r)
 {
     return material_is_opaque(m) || scene_has_constant_weights(r) ? 0.0 : m->reflectivity;
 }

@@ -112,9 +112,9 @@ bool material_is_turbid(const material *m);
 bool material_scatters(const material *m, const render_settings *r);
 /* Absorption plus tint by channel, in 1 / scene unit; not defined for opaque materials. */
 vec3 material_extinction(const material *m, double unit_m);
-/* The fraction of the transmitted light that the coating of a transparent surface reflects; 0 with constant weights,
- * which are used unchanged. */
-double material_coating(const material *m, const render_settings *r);
+/* The reflectivity of a transparent surface as a half mirror, which reflects that fraction of the light that would be
+ * transmitted; 0 with constant weights, which are used unchanged. */
+double material_reflectivity(const material *m, const render_settings *r);
 double surrounding_absorption_at(const background *b, double lambda_nm);
 bool surroundings_absorb(const background *b);
 

@@ -539,7 +539,7 @@ static const param table[] = {
     {PARAM_MATERIAL, "optic_axis", PARAM_VECTOR, "", -1000, 1000, false, "0,1,0",
      "optic axis of a crystal, in the solid's frame, of any length", NULL, OF(material, optic_axis)},
     REAL(PARAM_MATERIAL, material, film_thickness_nm, "nm", 0, 20000, "0",
-         "thickness of a transparent film on the surface (soap, oil, a coating), whose two faces interfere; 0: none"),
+         "thickness of a transparent film on the surface (soap, oil), whose two faces interfere; 0: none"),
     REAL(PARAM_MATERIAL, material, film_ior, "", 1, 5, "1.4", "refractive index of the film, relative to vacuum"),
     {PARAM_MATERIAL, "coating", PARAM_LAYERS, "", 0, 0, false, "none",
      "layers on the surface, from outside to inside, whose light interferes: a named design (cuvette media), or INDEX "
