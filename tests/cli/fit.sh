@@ -53,7 +53,7 @@ fit bound.study
 grep -qE '^liquid\.ior .* \.\. \[1\.33[0-9]*\] ' out && grep -q '^\[ \]: the parameter.s bound, at which' out
 verdict $? 'an end at the bound is in brackets' "$(<out)"
 fit bound.study --json
-equal 'JSON tells which end it is' "$(python3 -c '
+equal 'JSON marks the end at the bound' "$(python3 -c '
 import json
 p = json.load(open("out"))["parameters"][0]
 print(p["interval"], p["low_at_bound"], p["high_at_bound"], p["high"])')" 'profile, 95% False True 1.334'

@@ -4,6 +4,8 @@
 #include "study_fixture.h"
 #include <sched.h>
 
+#define COUNT(array) (sizeof(array) / sizeof((array)[0]))
+
 static const char grid_text[] =
     "study: test\n"
     "scene: scene.yaml\n"
@@ -246,6 +248,44 @@ static void the_cell_is_the_same_on_any_machine(void **state)
     study_destroy(here);
 }
 
+/* Coatings by name and by layers, and scales: each value is its own cell, has its text in the rows, and acts. */
+static void coatings_and_scales_are_swept(void **state)
+{
+    static const char *const values[][2] = {
+        {"none", "1,1,1"},
+        {"none", "1,2,-1"},
+        {"ar-550", "1,1,1"},
+        {"ar-550", "1,2,-1"},
+        {"mgf2 550/4", "1,1,1"},
+        {"mgf2 550/4", "1,2,-1"},
+        {"10x(tio2 550/4, fused-silica 550/4), 1.4 20", "1,1,1"},
+        {"10x(tio2 550/4, fused-silica 550/4), 1.4 20", "1,2,-1"},
+    };
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\norder: {shuffle: off}\n"
+                                "grid:\n"
+                                "  - {ball.coating: [none, ar-550, [mgf2 550/4], [10x(tio2 550/4, fused-silica 550/4), "
+                                "1.4 20]]}\n"
+                                "  - {ball.scale: [[1, 1, 1], [1, 2, -1]]}\n");
+    assert_int_equal(study_cell_count(s), COUNT(values));
+    assert_int_equal(fixture_run(f, s), COUNT(values));
+    csv *table = NULL;
+    char path[400];
+    fixture_path(f, "results/test/rows.csv", path);
+    assert_int_equal(csv_read(path, &table, NULL), STATUS_OK);
+    const int hash = csv_column(table, "film_hash");
+    for (size_t i = 0; i < COUNT(values); i++) {
+        expect(table, i, "ball.coating", values[i][0]);
+        expect(table, i, "ball.scale", values[i][1]);
+        for (size_t k = 0; k < i; k++) { /* the design ar-550 is mgf2 550/4 */
+            const bool same = (i == 4 || i == 5) && k == i - 2;
+            assert_int_equal(strcmp(csv_field(table, i, hash), csv_field(table, k, hash)) == 0, same);
+        }
+    }
+    csv_destroy(table);
+    study_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +294,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(each_worker_has_a_row, fixture_setup, fixture_teardown),
         cmocka_unit_test(times_are_utc),
         cmocka_unit_test_setup_teardown(rows_keep_the_word_and_have_the_number, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(coatings_and_scales_are_swept, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(the_cell_is_the_same_on_any_machine, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -93,6 +93,9 @@ static status read_value(const scene_reader *r, const char *path, const param_pl
     char *text = node_value_text(value);
     if (!text && node_is_value(value))
         return out_of_memory(r->why);
+    if (!text && at->row->type == PARAM_LAYERS)
+        return node_error(r->file, value, r->why, "write each layer for itself: [mgf2 550/4, tio2 20]",
+                          "%.150s has quoted layers with a comma", path);
     if (!text)
         return node_error(r->file, value, r->why, at->row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s contains something other than plain numbers", path);

@@ -175,7 +175,7 @@ static void put_value(scene_writer *w, const param *row, const char *value)
     case PARAM_VECTOR:
     case PARAM_COLOR:
     case PARAM_LIST: write_list(w->out, value); break;
-    case PARAM_LAYERS: fprintf(w->out, strchr(value, ' ') ? "[%s]" : "%s", *value ? value : "none"); break;
+    case PARAM_LAYERS: fprintf(w->out, strchr(value, ' ') ? "[%s]" : "%s", value); break;
     case PARAM_PATH:
     case PARAM_WORD: write_word(w->out, value); break;
     case PARAM_INT:

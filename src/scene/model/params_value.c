@@ -125,8 +125,8 @@ char *param_value_text(const param *row, int element, const void *field)
     }
     case PARAM_LIST: return list_text(field);
     case PARAM_PATH: return strdup(*(char *const *)field ? *(char *const *)field : "");
-    case PARAM_WORD:
-    case PARAM_LAYERS: return strdup(field);
+    case PARAM_WORD: return strdup(field);
+    case PARAM_LAYERS: return strdup(*(const char *)field ? field : "none");
     }
     return NULL;
 }

@@ -241,7 +241,7 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     return STATUS_OK;
 }
 
-/* An error is located at the key that asks for the table. */
+/* An error is located at the key of the table. */
 static status check_kept(const study *s, const node *keep, diagnostic *why)
 {
     const char *key;

@@ -35,8 +35,8 @@ static status try_value(scene *target, const document *d, const node *key, const
     if (!text && node_is_value(value))
         return out_of_memory(why);
     if (!text)
-        return node_error(d, value, why, "write a number, a word, or a list of numbers", "%s cannot be set to this",
-                          key->text);
+        return node_error(d, value, why, "write a number, a word, or a list without commas in its elements",
+                          "%s cannot be set to this", key->text);
     if (!read_grid_plain(text))
         code = node_error(d, value, why, "remove them", "%s has control characters", key->text);
     else if ((code = scene_set(target, key->text, text, why)) != STATUS_OK ||
