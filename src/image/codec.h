@@ -64,6 +64,9 @@ void codec_color_set_curve(codec_color *color, const codec_curve *all);
 /* Sets the primaries: CIE xy of white, red, green, blue. White stays white, by Bradford's adaptation to D65. False,
  * with color unchanged, if they span no colours. */
 bool codec_color_set_primaries(codec_color *color, const double xy[8]);
+/* The same without adaptation: a spectrum keeps its colour, and another white is not grey. luminance: of red, green and
+ * blue, of sum 1. */
+bool codec_color_set_unadapted(codec_color *color, const double xy[8], double luminance[3]);
 /* The channels are CIE XYZ, without adaptation. */
 void codec_color_set_XYZ(codec_color *color);
 
@@ -199,11 +202,6 @@ bool png_bands_get(const png_bands *b, size_t index, const unsigned char **bytes
 
 /* --- exr_colours.c --- */
 
-/* Chromaticities x and y (CIE 1931) of red, green, blue and white. */
-typedef struct exr_primaries {
-    double x[4], y[4];
-} exr_primaries;
-
 /* Chroma of an image of width x height pixels, at every second column and line: (R - Y) / Y and (B - Y) / Y. Ownership:
  * create allocates, release frees. */
 typedef struct exr_chroma {
@@ -216,6 +214,7 @@ void exr_chroma_release(exr_chroma *c);
 /* Turns the values of a file into our colours: chroma, if there is any, into RGB (luminance is in all three channels),
  * linear RGB of these primaries into linear sRGB, and divides by alpha, which is clamped to 0..1 (alpha of 1 everywhere
  * is removed; colours with alpha 0 stay). chroma is changed. x, y: the image's first pixel in the image of which chroma
- * is. NULL: the primaries of sRGB. STATUS_BAD_INPUT for a value that is not finite, and for primaries on one line. */
-status exr_colours_convert(image *img, const exr_primaries *primaries, exr_chroma *chroma, int64_t x, int64_t y,
+ * is. primaries: CIE xy of white, red, green, blue; NULL: those of sRGB. STATUS_BAD_INPUT for a value that is not
+ * finite, and for primaries on one line. */
+status exr_colours_convert(image *img, const double primaries[8], exr_chroma *chroma, int64_t x, int64_t y,
                            diagnostic *why);

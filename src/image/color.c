@@ -30,7 +30,7 @@ static void apply(const matrix *a, const double from[3], double to[3])
         to[i] = a->m[i][0] * from[0] + a->m[i][1] * from[1] + a->m[i][2] * from[2];
 }
 
-/* By cofactors; false for a singular matrix. */
+/* By cofactors; false for a matrix that is singular or not finite. */
 static bool invert(matrix a, matrix *out)
 {
     double determinant = 0.0;
@@ -41,7 +41,7 @@ static bool invert(matrix a, matrix *out)
         }
     for (int j = 0; j < 3; j++)
         determinant += a.m[0][j] * out->m[j][0];
-    if (!(fabs(determinant) > 1e-9))
+    if (!(fabs(determinant) > 1e-9 && isfinite(determinant)))
         return false;
     for (int i = 0; i < 9; i++)
         out->m[i / 3][i % 3] /= determinant;
@@ -123,6 +123,17 @@ bool codec_color_set_primaries(codec_color *color, const double xy[8])
     if (!to_XYZ(xy, &XYZ) || !white_of(xy, from) || !white_of(srgb_xy, to) || !adaptation(from, to, &adapt))
         return false;
     set_matrix(color, product(srgb_of_XYZ(), product(adapt, XYZ)));
+    return true;
+}
+
+bool codec_color_set_unadapted(codec_color *color, const double xy[8], double luminance[3])
+{
+    matrix XYZ;
+    if (!to_XYZ(xy, &XYZ))
+        return false;
+    for (int c = 0; c < 3; c++)
+        luminance[c] = XYZ.m[1][c];
+    set_matrix(color, product(srgb_of_XYZ(), XYZ));
     return true;
 }
 

@@ -430,9 +430,8 @@ static status read_image(exr_reading *r, diagnostic *why)
     TRY(prepare(r, why));
     TRY(r->tiled ? read_tiles(r, why) : read_lines(r, why));
     const bool given = exr_attr_get_chromaticities(r->source.file, r->part, "chromaticities", &c) == EXR_ERR_SUCCESS;
-    const exr_primaries primaries = {{c.red_x, c.green_x, c.blue_x, c.white_x},
-                                     {c.red_y, c.green_y, c.blue_y, c.white_y}};
-    return exr_colours_convert(r->img, given ? &primaries : NULL, r->chroma ? &r->planes : NULL,
+    const double primaries[8] = {c.white_x, c.white_y, c.red_x, c.red_y, c.green_x, c.green_y, c.blue_x, c.blue_y};
+    return exr_colours_convert(r->img, given ? primaries : NULL, r->chroma ? &r->planes : NULL,
                                r->display.min.x - (int64_t)r->data.min.x, r->display.min.y - (int64_t)r->data.min.y,
                                why);
 }

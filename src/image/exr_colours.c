@@ -70,89 +70,27 @@ static double chroma_at(const float *plane, const exr_chroma *c, size_t x, size_
     return y % 2 == 0 ? (double)plane[y / 2 * width + x] : between(plane + x, width, c->lines, (int64_t)(y / 2));
 }
 
-/* weight: of R, G and B in luminance. */
-static void colour_of(const double weight[3], double red, double blue, float rgb[3])
+/* luminance: of R, G and B, of sum 1. */
+static void colour_of(const double luminance[3], double red, double blue, float rgb[3])
 {
     const double Y = (double)rgb[0], R = (red + 1.0) * Y, B = (blue + 1.0) * Y;
     if (red == 0.0 && blue == 0.0)
         return; /* grey stays exact */
     rgb[0] = (float)R;
-    rgb[1] = (float)((Y - R * weight[0] - B * weight[2]) / weight[1]);
+    rgb[1] = (float)((Y - R * luminance[0] - B * luminance[2]) / luminance[1]);
     rgb[2] = (float)B;
 }
 
 /* ---- primaries ---- */
 
-typedef struct matrix {
-    double m[3][3];
-} matrix;
+/* ITU-R BT.709, which a file without primaries has. */
+static const double bt709[8] = {0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06};
 
-static double minor_of(const matrix *a, int row, int column)
-{
-    const int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (column + 1) % 3, c2 = (column + 2) % 3;
-    return a->m[r1][c1] * a->m[r2][c2] - a->m[r1][c2] * a->m[r2][c1];
-}
-
-/* By cofactors, whose signs the cyclic indices contain; false if there is none. */
-static bool invert(const matrix *a, matrix *out)
-{
-    double determinant = 0;
-    for (int i = 0; i < 3; i++)
-        determinant += a->m[0][i] * minor_of(a, 0, i);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            out->m[k][i] = minor_of(a, i, k) / determinant;
-    return isfinite(determinant) && fabs(determinant) > 1e-9;
-}
-
-/* Linear RGB to XYZ: white, R = G = B = 1, has Y = 1 (SMPTE RP 177-1993). */
-static bool to_xyz(const exr_primaries *p, matrix *out)
-{
-    matrix inverse;
-    for (int i = 0; i < 3; i++)
-        out->m[0][i] = p->x[i], out->m[1][i] = p->y[i], out->m[2][i] = 1.0 - p->x[i] - p->y[i];
-    if (!invert(out, &inverse) || !(fabs(p->y[3]) > 1e-9))
-        return false;
-    const double white[3] = {p->x[3] / p->y[3], 1.0, (1.0 - p->x[3] - p->y[3]) / p->y[3]};
-    for (int i = 0; i < 3; i++) {
-        const double scale = inverse.m[i][0] * white[0] + inverse.m[i][1] * white[1] + inverse.m[i][2] * white[2];
-        for (int row = 0; row < 3; row++)
-            out->m[row][i] *= scale;
-    }
-    return true;
-}
-
-/* IEC 61966-2-1; equal to those of ITU-R BT.709, which a file without primaries has. */
-static const exr_primaries srgb = {{0.64, 0.30, 0.15, 0.3127}, {0.33, 0.60, 0.06, 0.3290}};
-
-static bool is_srgb(const exr_primaries *p)
-{
-    double most = 0;
-    for (int i = 0; i < 4; i++)
-        most = fmax(most, fmax(fabs(p->x[i] - srgb.x[i]), fabs(p->y[i] - srgb.y[i])));
-    return most < 1e-4;
-}
-
-/* weight: luminance of R, G and B, of sum 1. */
-static status conversion(const exr_primaries *p, matrix *to_srgb, double weight[3], diagnostic *why)
-{
-    matrix from, ours, back;
-    const bool valid = to_xyz(p, &from) && to_xyz(&srgb, &ours) && invert(&ours, &back);
-    for (int i = 0; i < 3 && valid; i++) {
-        weight[i] = from.m[1][i];
-        for (int k = 0; k < 3; k++)
-            to_srgb->m[i][k] = back.m[i][0] * from.m[0][k] + back.m[i][1] * from.m[1][k] + back.m[i][2] * from.m[2][k];
-    }
-    return valid ? STATUS_OK
-                 : diagnose(why, STATUS_BAD_INPUT, "save it with the chromaticities of its red, green, blue and white",
-                            "the chromaticities in the OpenEXR file are no primaries: they are on one line");
-}
-
-static void convert(const matrix *a, float rgb[3])
+static void convert(const codec_color *color, float rgb[3])
 {
     const double r = (double)rgb[0], g = (double)rgb[1], b = (double)rgb[2];
     for (int i = 0; i < 3; i++)
-        rgb[i] = (float)(a->m[i][0] * r + a->m[i][1] * g + a->m[i][2] * b);
+        rgb[i] = (float)(color->to_srgb[i][0] * r + color->to_srgb[i][1] * g + color->to_srgb[i][2] * b);
 }
 
 /* ---- alpha ---- */
@@ -176,14 +114,14 @@ static void drop_full_alpha(image *img)
     img->alpha = NULL;
 }
 
-status exr_colours_convert(image *img, const exr_primaries *primaries, exr_chroma *chroma, int64_t x, int64_t y,
+status exr_colours_convert(image *img, const double primaries[8], exr_chroma *chroma, int64_t x, int64_t y,
                            diagnostic *why)
 {
-    const exr_primaries *p = primaries ? primaries : &srgb;
-    matrix to_srgb;
-    double weight[3] = {0, 1, 0};
-    const bool is_ours = is_srgb(p);
-    TRY(conversion(p, &to_srgb, weight, why));
+    codec_color color = {.mixes = false};
+    double luminance[3];
+    if (!codec_color_set_unadapted(&color, primaries ? primaries : bt709, luminance))
+        return diagnose(why, STATUS_BAD_INPUT, "save it with the chromaticities of its red, green, blue and white",
+                        "the chromaticities in the OpenEXR file are no primaries: they are on one line");
     if (chroma) {
         TRY(widen(&chroma->red, chroma, why));
         TRY(widen(&chroma->blue, chroma, why));
@@ -195,10 +133,10 @@ status exr_colours_convert(image *img, const exr_primaries *primaries, exr_chrom
             const int64_t cx = x + (int64_t)column, cy = y + (int64_t)row;
             float *rgb = img->pixel + 3 * at;
             if (chroma && cx >= 0 && cy >= 0 && cx < 2 * (int64_t)chroma->columns && cy < 2 * (int64_t)chroma->lines)
-                colour_of(weight, chroma_at(chroma->red, chroma, (size_t)cx, (size_t)cy),
+                colour_of(luminance, chroma_at(chroma->red, chroma, (size_t)cx, (size_t)cy),
                           chroma_at(chroma->blue, chroma, (size_t)cx, (size_t)cy), rgb);
-            if (!is_ours)
-                convert(&to_srgb, rgb);
+            if (color.mixes)
+                convert(&color, rgb);
             if (img->alpha)
                 divide(rgb, &img->alpha[at]);
             if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
