@@ -408,6 +408,39 @@ static void bodies_are_limited_in_size(void **state)
     expect(*state, 200, "POST", "/echo", "Content-Type: application/json\r\n", "");
 }
 
+/* A request whose body has two lengths can hide another request behind it from a proxy (RFC 9112, 11.2). */
+static void a_body_has_one_length(void **state)
+{
+    const http_server *s = *state;
+    const struct {
+        int code;
+        const char *heads;
+    } cases[] = {
+        {200, "Content-Length: 5\r\n"},
+        {200, "Content-Length: 5\r\nContent-Length: 5\r\n"},
+        {400, "Content-Length: 5\r\nContent-Length: 6\r\n"},
+        {400, "Content-Length: 6\r\nContent-Length: 5\r\n"},
+        {400, "Content-Length: 5\r\ncontent-length: 0\r\n"},
+        {400, "Content-Length: 5, 5\r\n"},
+        {400, "Content-Length: +5\r\n"},
+        {400, "Content-Length: 5x\r\n"},
+        {400, "Content-Length: -5\r\n"},
+        {400, "Content-Length: \r\n"},
+        {400, "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n"},
+        {400, "Transfer-Encoding: chunked\r\nTransfer-Encoding: identity\r\n"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char *request = text_format("POST /echo HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n"
+                                    "Connection: close\r\nContent-Type: application/json\r\n%s\r\nhello",
+                                    http_port(s), http_token(s), cases[i].heads);
+        char *reply = client_raw(http_port(s), request, strlen(request));
+        if (reply_code(reply) != cases[i].code)
+            fail_msg("a body with %s replied %.200s, expected %d", cases[i].heads, reply, cases[i].code);
+        free(reply);
+        free(request);
+    }
+}
+
 static void a_connection_serves_a_thousand_requests(void **state)
 {
     const http_server *s = *state;
@@ -563,6 +596,7 @@ int main(void)
         cmocka_unit_test(the_page_is_embedded),
         cmocka_unit_test(changes_require_json),
         cmocka_unit_test(bodies_are_limited_in_size),
+        cmocka_unit_test(a_body_has_one_length),
         cmocka_unit_test(a_connection_serves_a_thousand_requests),
         cmocka_unit_test(the_request_rate_is_limited),
         cmocka_unit_test(slow_clients_are_disconnected),

@@ -14,6 +14,7 @@
  * The checks of every request, in this order; the first that fails replies {"error": .., "remedy": ..}:
  *   400  HTTP/1.0 or 1.1 with one Host; a path of printable characters without "." or ".." as a part, "//", "\\",
  *        %00, %2f or %5c, however they are encoded; libmicrohttpd ends the line at an unencoded NUL
+ *        and a body of one length: one Content-Length in digits (or several equal ones) or one Transfer-Encoding
  *   421  Host is 127.0.0.1, localhost or [::1] with this port: another name means DNS rebinding by another site
  *   403  Origin, if present, is that same host
  *   429  requests_per_s, with a burst of one second; requests without the token have a separate limit

@@ -112,22 +112,38 @@ static bool is_local_host(const http_server *s, const char *host)
 }
 
 typedef struct site_headers {
-    int hosts, origins;
-    const char *host, *origin;
+    int hosts, origins, encodings;
+    const char *host, *origin, *length;
+    bool lengths_differ;
 } site_headers;
 
-static enum MHD_Result collect_header(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
+static enum MHD_Result collect_header(void *context, enum MHD_ValueKind kind, const char *name, const char *given)
 {
     (void)kind;
     site_headers *h = context;
+    const char *value = given ? given : "";
     if (strcasecmp(name, "Host") == 0) {
         h->hosts++;
-        h->host = value ? value : "";
+        h->host = value;
     } else if (strcasecmp(name, "Origin") == 0) {
         h->origins++;
-        h->origin = value ? value : "";
+        h->origin = value;
+    } else if (strcasecmp(name, "Transfer-Encoding") == 0) {
+        h->encodings++;
+    } else if (strcasecmp(name, "Content-Length") == 0) {
+        h->lengths_differ |= h->length && strcmp(h->length, value) != 0;
+        h->length = value;
     }
     return MHD_YES;
+}
+
+/* Whether the body has one length, so that a proxy and this server agree where the next request begins (RFC 9112, 6.1
+ * and 6.3). */
+static bool has_one_length(const site_headers *h)
+{
+    if (!h->length)
+        return h->encodings <= 1;
+    return !h->lengths_differ && h->encodings == 0 && h->length[0] && !h->length[strspn(h->length, "0123456789")];
 }
 
 static bool within_rate(http_server *s, bool known)
@@ -200,6 +216,12 @@ static int guard_site(http_request *q, const char *version)
         return refuse(q, 500, "out of memory for the request", "try again later");
     if (!q->path)
         return refuse(q, 400, "the path contains '..' or invalid characters", "use a path as in the page's links");
+    q->length_unclear = !has_one_length(&h);
+    if (q->length_unclear) {
+        http_reply_header(&q->reply, "Connection", "close");
+        return refuse(q, 400, "the length of the body is not clear",
+                      "send one Content-Length, in digits, or one Transfer-Encoding");
+    }
     if (h.hosts != 1 || h.origins > 1)
         return refuse(q, 400, "exactly one Host and at most one Origin are required",
                       "send the header Host once, and Origin at most once");

@@ -72,6 +72,7 @@ struct http_request {
     char *body;
     size_t body_size, body_room, received;
     bool head_read;
+    bool length_unclear; /* nobody knows where the body ends: it is not read */
     http_reply reply; /* if set before the body arrives, the body is discarded */
 };
 

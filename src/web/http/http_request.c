@@ -104,7 +104,7 @@ static enum MHD_Result read_head(http_request *q, const char *method, const char
     const unsigned long long size = length ? strtoull(length, NULL, 10) : 0;
     if (size > q->server->settings.body_max)
         too_large(q);
-    if (size / PATIENCE > q->server->settings.body_max)
+    if (q->length_unclear || size / PATIENCE > q->server->settings.body_max)
         return send_reply(&q->reply);
     return MHD_YES;
 }
