@@ -593,7 +593,7 @@ CUVETTE_API void cuvette_tree_destroy(cuvette_tree *tree);
 CUVETTE_API const cuvette_node *cuvette_tree_nodes(const cuvette_tree *tree, size_t *count);
 /* Writes the radiance that the tree adds to its pixel, three numbers. */
 CUVETTE_API cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, double *rgb, cuvette_diagnostic *why);
-/* Writes what `cuvette trace` writes, in the format of the path's ending: .txt, .json, .svg. */
+/* Writes what `cuvette trace` writes, in the format of the path's ending: .txt, .json, .csv, .svg. */
 CUVETTE_API cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why);
 
 /* A ray of one of the scene's beams; beam_name is valid until its tree is destroyed. */

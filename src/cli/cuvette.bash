@@ -75,7 +75,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
-        trace) _cuvette_files 'txt|json|svg' ;;
+        trace) _cuvette_files 'txt|json|csv|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         lens) _cuvette_files 'yaml|yml|zmx|dat|csv' ;;
         scene | fit) _cuvette_files 'yaml|yml' ;;
@@ -181,7 +181,7 @@ _cuvette()
         ;;
     trace)
         if [[ $current == -* ]]; then
-            _cuvette_words --pixel --ray --beams --depth --lambda --min-weight --set --text --json --svg --output --memory-limit --help --usage --version
+            _cuvette_words --pixel --ray --beams --depth --lambda --min-weight --set --text --json --csv --svg --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

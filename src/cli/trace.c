@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_NONE } trace_format;
+typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_CSV, FORMAT_SVG, FORMAT_NONE } trace_format;
 
 typedef struct trace_request {
     scene_input input;
@@ -24,10 +24,11 @@ static status parse_format(const command_option *o, void *context, const char *v
     trace_request *request = context;
     const trace_format format = strcmp(o->name, "text") == 0   ? FORMAT_TEXT
                                 : strcmp(o->name, "json") == 0 ? FORMAT_JSON
+                                : strcmp(o->name, "csv") == 0  ? FORMAT_CSV
                                                                : FORMAT_SVG;
     (void)value;
     if (request->format != FORMAT_NONE && request->format != format)
-        return options_wrong("trace", NULL, why, "give only one of --text, --json, --svg",
+        return options_wrong("trace", NULL, why, "give only one of --text, --json, --csv, --svg",
                              "more than one format is given");
     request->format = format;
     return STATUS_OK;
@@ -65,8 +66,9 @@ static const command_option options[] = {
     OPTION_MEMORY,
     {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .store = parse_format},
     {"json", 0, NULL, "print one JSON object", .store = parse_format},
+    {"csv", 0, NULL, "print comma-separated values, a row for each ray", .store = parse_format},
     {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .store = parse_format},
-    OPTION_OUTPUT("write to FILE; its ending selects the format: .txt, .json, .svg"),
+    OPTION_OUTPUT("write to FILE; its ending selects the format: .txt, .json, .csv, .svg"),
     {0},
 };
 
@@ -88,7 +90,7 @@ static status check_beam_options(const scene_input *input, diagnostic *why)
 
 static status check_request(void *context, diagnostic *why)
 {
-    static const char *const endings[] = {".txt", ".json", ".svg"};
+    static const char *const endings[] = {".txt", ".json", ".csv", ".svg"};
     trace_request *request = context;
     const int given = request->by_pixel + request->by_ray + request->beams;
     if (given != 1)
@@ -99,12 +101,12 @@ static status check_request(void *context, diagnostic *why)
     size_t which = FORMAT_TEXT;
     status result = STATUS_OK;
     if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)
-        result = outputs_ending("-o", request->input.output, endings, 3,
-                                "use .txt, .json or .svg, or give --text, --json or --svg", &which, why);
+        result = outputs_ending("-o", request->input.output, endings, 4,
+                                "use .txt, .json, .csv or .svg, or give --text, --json, --csv or --svg", &which, why);
     if (request->format == FORMAT_NONE)
         request->format = (trace_format)which;
     if (result == STATUS_OK && request->beams && request->format == FORMAT_SVG)
-        return options_wrong("trace", NULL, why, "use --text or --json, or cuvette render --beams for an image",
+        return options_wrong("trace", NULL, why, "use --text, --json or --csv, or cuvette render --beams for an image",
                              "beams have no drawing of one plane");
     return result;
 }
@@ -130,6 +132,7 @@ static status write_as(const void *content, FILE *out, diagnostic *why)
     const formatted *f = content;
     switch (f->format) {
     case FORMAT_JSON: return trace_write_json(&f->tree, out, why);
+    case FORMAT_CSV: return trace_write_csv(&f->tree, out, why);
     case FORMAT_SVG: return trace_write_drawing(&f->tree, out, why);
     case FORMAT_TEXT:
     case FORMAT_NONE: break;
@@ -145,7 +148,14 @@ typedef struct formatted_beams {
 static status write_beams_as(const void *content, FILE *out, diagnostic *why)
 {
     const formatted_beams *f = content;
-    return f->format == FORMAT_JSON ? beams_write_json(&f->beams, out, why) : beams_write_text(&f->beams, out, why);
+    switch (f->format) {
+    case FORMAT_JSON: return beams_write_json(&f->beams, out, why);
+    case FORMAT_CSV: return beams_write_csv(&f->beams, out, why);
+    case FORMAT_SVG:
+    case FORMAT_TEXT:
+    case FORMAT_NONE: break;
+    }
+    return beams_write_text(&f->beams, out, why);
 }
 
 static status run_beams(const trace_request *request, const scene *s, isa level, diagnostic *why)

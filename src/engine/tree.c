@@ -215,12 +215,17 @@ static status write_json(const void *content, FILE *out, diagnostic *why)
     return trace_write_json(content, out, why);
 }
 
+static status write_csv(const void *content, FILE *out, diagnostic *why)
+{
+    return trace_write_csv(content, out, why);
+}
+
 static status write_drawing(const void *content, FILE *out, diagnostic *why)
 {
     return trace_write_drawing(content, out, why);
 }
 
-static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".svg", write_drawing}};
+static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".csv", write_csv}, {".svg", write_drawing}};
 
 cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why)
 {
@@ -230,8 +235,8 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : "", false};
-    code =
-        query_write_file(writers, sizeof writers / sizeof *writers, "use .txt, .json or .svg", &content, path, &inner);
+    code = query_write_file(writers, sizeof writers / sizeof *writers, "use .txt, .json, .csv or .svg", &content, path,
+                            &inner);
     query_end_trace(q);
     return engine_report(code, &inner, why);
 }

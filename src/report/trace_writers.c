@@ -27,6 +27,16 @@ static void write_channels(FILE *out, const double c[3])
         fprintf(out, "%.6g,%.6g,%.6g", c[0], c[1], c[2]);
 }
 
+const char *trace_kind_word(const ray_node *node)
+{
+    return kind_words[node->kind];
+}
+
+const char *trace_end_word(const ray_node *node)
+{
+    return end_words[node->end];
+}
+
 double trace_angle_deg(double cosine)
 {
     return elementary_atan2_deg(sqrt(fmax(0.0, 1.0 - cosine * cosine)), cosine);
@@ -354,8 +364,8 @@ static status write_beam_text(void *context, const beam_ray *ray, const ray_tree
     TRY(count_segments(w, ray, tree, why));
     fprintf(w->out, "%s: %s, ", b->name, beam_kind_words[b->kind]);
     if (beam_fields(b) > 1)
-        fprintf(w->out, "field point %d of %d, ", ray->field + 1, beam_fields(b));
-    fprintf(w->out, "ray %d of %d, %.6g nm, power %.6g\n", ray->number + 1, ray->rays, ray->lambda_nm, ray->power);
+        fprintf(w->out, "field point %d (of %d), ", ray->field, beam_fields(b));
+    fprintf(w->out, "ray %d (of %d), %.6g nm, power %.6g\n", ray->number, ray->rays, ray->lambda_nm, ray->power);
     write_text_rays(&(traced){w->beams->s, p, tree, w->beams->scene_path, false}, w->out);
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* Writers of a ray tree, as text, JSON and a drawing; of the ray trees of a scene's beams; and of the light that beams
+/* Writers of a ray tree, as text, JSON, CSV and a drawing; of the ray trees of a scene's beams; and of the light that beams
  * cast on a screen. cuvette-trace(1) documents the formats. Errors of the stream stay in the stream, where the caller
  * checks them. Ownership: everything is borrowed. */
 #pragma once
@@ -18,12 +18,17 @@ typedef struct traced {
     bool for_page; /* JSON for the laboratory's page, with more keys, so that the page computes no optics */
 } traced;
 
+/* What a ray is, and how it ends, in every output: "reflect", "cut_depth". */
+const char *trace_kind_word(const ray_node *node);
+const char *trace_end_word(const ray_node *node);
 /* The angle between a ray and the normal, from its cosine. */
 double trace_angle_deg(double cosine);
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 /* cuvette-trace(1) documents the fixed schema in JSON OUTPUT. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
+/* A row for each ray; cuvette-trace(1) documents the columns in CSV OUTPUT. */
+status trace_write_csv(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);
 
 typedef struct beam_output {
@@ -36,6 +41,8 @@ typedef struct beam_output {
 
 status beams_write_text(const beam_output *b, FILE *out, diagnostic *why);
 status beams_write_json(const beam_output *b, FILE *out, diagnostic *why);
+/* Without a limit of rays: each is written as it is traced. */
+status beams_write_csv(const beam_output *b, FILE *out, diagnostic *why);
 
 status beam_screen_write_json(const beam_screen *screen, FILE *out, diagnostic *why);
 

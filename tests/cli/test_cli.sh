@@ -710,9 +710,23 @@ check "trace of a ray under water: total internal reflection" matches "$(head -1
 run scene "$scene" --add beam:laser,position=-2.5,1.6,-0.4,target=0,1.4,-0.4 -o beams.yaml
 check "a beam is added to a scene" is "$code" 0
 run trace beams.yaml --beams
-check "trace --beams names beam and ray" matches "$(head -1 out)" 'laser: pencil, ray 1 of 1, 587\.562 nm, power 1'
+check "trace --beams names beam and ray" matches "$(head -1 out)" 'laser: pencil, ray 0 \(of 1\), 587\.562 nm, power 1'
 run trace beams.yaml --beams --json
 check "trace --beams --json" silent_success
+run trace beams.yaml --beams --json
+rays=$(grep -c '"kind":"[a-z]*","depth"' out)
+run trace beams.yaml --beams -o beams.csv
+check "trace --beams as CSV: a row for each ray" is "$(($(wc -l <beams.csv) - 1))" "$rays"
+check "each row has all columns" is "$(awk -F, '{ print NF }' beams.csv | sort -u)" 32
+check "rows obey Snell's law" is "$(awk -F, 'function sine(deg) { return sin(deg * atan2(0, -1) / 180) }
+    $29 != "NA" && NR > 1 { n++; off += ($11 * sine($28) - $27 * sine($29)) ^ 2 > 1e-18 }
+    END { print (n > 3), off + 0 }' beams.csv)" "1 0"
+check "each row goes to the next: length times direction" is "$(awk -F, 'NR > 1 && $19 == "hit" { n++
+    off += ($12 + $22 * $15 - $23) ^ 2 + ($13 + $22 * $16 - $24) ^ 2 + ($14 + $22 * $17 - $25) ^ 2 > 1e-18 }
+    END { print (n > 3), off + 0 }' beams.csv)" "1 0"
+run trace "$scene" --pixel 40,30 --depth 2 --csv "${small[@]}"
+check "trace --csv names no beam for a pixel" matches "$(sed -n 2p out)" '^NA,NA,NA,587\.[0-9]+,NA,0,NA,camera,0,'
+check "a shadow ray's row ends at its light" matches "$(grep -m1 ',shadow,' out)" ',(lit|blocked),[a-z_0-9]+,NA,[0-9.]+,NA'
 run trace beams.yaml --beams --min-weight 0.1
 check "beams have their own least fraction" matches "$(<err)" \
     "--min-weight does not act on beams; use --set BEAM.min_fraction=VALUE"
