@@ -23,9 +23,9 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "experiments/validation"
-KEYS = "what source given expected unit scene files command read tolerance because".split()
+KEYS = "what source given expected nature unit scene files command read tolerance because".split()
 NEEDED = "what source expected command read tolerance because".split()
-COLUMNS = "kind case what source formula expected ours deviation tolerance reason unit verdict".split()
+COLUMNS = "kind case what source formula expected ours deviation tolerance reason unit verdict nature".split()
 
 
 class Trouble(Exception):
@@ -330,6 +330,7 @@ def judge(program, case):
         "expected": "",
         "tolerance": "",
         "verdict": "error",
+        "nature": "",
     }
     row = {key: re.sub(r"\s+", " ", text) for key, text in row.items()}
     try:
@@ -337,6 +338,8 @@ def judge(program, case):
         expected = float(value_of(case["expected"], names))
         tolerance = float(value_of(case["tolerance"], {**names, "expected": expected}))
         row |= {"expected": expected, "tolerance": tolerance}
+        if "nature" in case:
+            row["nature"] = float(value_of(case["nature"], names))
         with tempfile.TemporaryDirectory() as folder:
             ours = float(value_of(case["read"], {**names, **run(program, case, names, folder)}))
         deviation = abs(ours - expected)

@@ -49,8 +49,10 @@ FNR == 1 {
 }
 {
     split_line($0)
-    total++
-    passed += field[column["verdict"]] == "pass"
+    is_limit = field[column["nature"]] != ""
+    total += !is_limit
+    limits += is_limit
+    passed += !is_limit && field[column["verdict"]] == "pass"
     if (field[column["kind"]] != kind) {
         kind = field[column["kind"]]
         printf ".SS %s%s", escaped(head[kind, "title"]), escaped(head[kind, "about"])
@@ -58,9 +60,15 @@ FNR == 1 {
     unit = field[column["unit"]] == "" ? "" : " " escaped(field[column["unit"]])
     print ".TP\n\\fB" escaped(field[column["case"]]) "\\fR"
     print escaped(field[column["what"]]) "."
-    print "Expected " number(field[column["expected"]]) unit ", computed " number(field[column["ours"]]) unit \
+    if (is_limit)
+        print "Nature " number(field[column["nature"]]) unit ", the program " number(field[column["ours"]]) unit \
+            ": it is off by " number(field[column["ours"]] - field[column["nature"]]) unit "."
+    print (is_limit ? "By rays " : "Expected ") number(field[column["expected"]]) unit ", computed " number(field[column["ours"]]) unit \
         "; deviation " small(field[column["deviation"]]) ", tolerance " small(field[column["tolerance"]]) ": " \
         escaped(field[column["reason"]]) "."
     print "Source: " escaped(field[column["source"]]) "."
 }
-END { print ".SS Summary\n" passed " of " total " cases are within their tolerances." }
+END {
+    print ".SS Summary\n" passed " of " total " cases are within their tolerances."
+    print "There are " limits " limits besides, where nature differs from rays, and the program from nature."
+}

@@ -19,12 +19,14 @@ def page(root, source):
     with open(root / ROWS, newline='', encoding='utf-8') as file:
         rows = list(csv.DictReader(file))
     kinds = list(dict.fromkeys(row['kind'] for row in rows))
-    passed = sum(row['verdict'] == 'pass' for row in rows)
+    limits = sum(bool(row['nature']) for row in rows)
+    passed = sum(row['verdict'] == 'pass' and not row['nature'] for row in rows)
     up = '../' * source.count('/')
     figures = ''.join(f'<figure><img src="{up}{ROWS.rpartition("/")[0]}/{name}" alt="{re.sub("<[^>]*>", "", text)}">'
                       f'<figcaption>{text}</figcaption></figure>\n' for name, text in FIGURES)
     tables = ''.join(table(root, kind, [row for row in rows if row['kind'] == kind], up) for kind in kinds)
-    summary = (f'<p>{passed} of {len(rows)} cases of {len(kinds)} kinds are within their tolerances. The rows are in '
+    summary = (f'<p>{passed} of {len(rows) - limits} cases are within their tolerances. There are {limits} limits besides, '
+               f'where nature differs from rays, and the program from nature. The rows are in '
                f'<a href="{up}{ROWS}">{ROWS}</a>.</p>\n')
     made.body = re.sub(r'(<h2 class="Sh" id="CASES">.*?</h2>\n).*?</section>',
                        lambda match: match[1] + summary + figures + tables + '</section>', made.body, flags=re.S)
@@ -38,19 +40,26 @@ def head(root, kind):
     return title, re.sub(r'\s+', ' ', about).strip()
 
 
+def value(row, column):
+    return f'{float(row[column]):.9g}' + (f' {escape(row["unit"])}' if row['unit'] else '')
+
+
 def table(root, kind, rows, up):
+    """A kind of limits has what nature does and how far the program is from it."""
     title, about = head(root, kind)
+    limits = all(row['nature'] for row in rows)
+    heads = ['nature', 'the program', 'off by', 'by rays'] if limits else ['expected', 'ours', 'deviation', 'tolerance']
     text = [f'<h3 id="{kind}">{escape(title)}</h3>\n<p>{escape(about)} The formulas are in <a href="{up}experiments/'
-            f'validation/{kind}.cases">{kind}.cases</a>.</p>\n<table class="cases">\n'
-            '<thead><tr><th>what, and source</th>'
-            '<th>expected</th><th>ours</th><th>deviation</th><th>tolerance</th></tr></thead>\n<tbody>\n']
+            f'validation/{kind}.cases">{kind}.cases</a>.</p>\n<table class="cases">\n<thead><tr><th>what, and source</th>'
+            + ''.join(f'<th>{name}</th>' for name in heads) + '</tr></thead>\n<tbody>\n']
     for row in rows:
-        unit = f' {escape(row["unit"])}' if row['unit'] else ''
-        ours = f'{float(row["ours"]):.9g}{unit}' if row['ours'] else 'no value'
+        ours = value(row, 'ours') if row['ours'] else 'no value'
         ours = ours if row['verdict'] == 'pass' else f'<b>{ours}: {row["verdict"]}</b>'
         deviation = f'{float(row["deviation"]):.2g}' if row['deviation'] else ''
+        off = f'{float(row["ours"]) - float(row["nature"]):.9g}' if limits and row['ours'] else ''
+        cells = ([value(row, 'nature'), ours, off, value(row, 'expected')] if limits else
+                 [value(row, 'expected'), ours, deviation, f'{float(row["tolerance"]):.2g}'])
         text.append(f'<tr><td>{escape(row["what"])}<small>{escape(row["source"])}<br>'
                     f'Tolerance: {escape(row["reason"])}</small></td>'
-                    f'<td>{float(row["expected"]):.9g}{unit}</td><td>{ours}</td><td>{deviation}</td>'
-                    f'<td>{float(row["tolerance"]):.2g}</td></tr>\n')
+                    + ''.join(f'<td>{cell}</td>' for cell in cells) + '</tr>\n')
     return ''.join(text) + '</tbody>\n</table>\n'
