@@ -225,7 +225,8 @@ static status write_drawing(const void *content, FILE *out, diagnostic *why)
     return trace_write_drawing(content, out, why);
 }
 
-static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".csv", write_csv}, {".svg", write_drawing}};
+static const ray_writer writers[] = {
+    {".txt", write_text}, {".json", write_json}, {".csv", write_csv}, {".svg", write_drawing}};
 
 cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why)
 {

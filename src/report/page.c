@@ -32,6 +32,7 @@
     "svg a:hover .numbers,svg a:focus .numbers,svg a:target .numbers{visibility:visible}\n"                   \
     "svg a:hover .halo,svg a:focus .halo,svg a:target .halo{stroke:#ffe14d;stroke-opacity:1}\n"               \
     ".halo{stroke:#000000;stroke-opacity:.55}.near{stroke:#000000;stroke-opacity:0}\n"                        \
+    ".stage svg{isolation:isolate}.light{mix-blend-mode:plus-lighter}\n"                                      \
     ".camera{stroke:#ffffff}.reflect{stroke:#ff8f4d}.refract{stroke:#5cb8ff}\n"                               \
     ".shadow{stroke:#ffc93c;stroke-dasharray:5 3}.blocked{stroke:#b4b4b4;stroke-dasharray:5 3}\n"             \
     ".frame{overflow:auto;max-height:26rem;border:1px solid var(--edge)}\n"                                   \

@@ -235,7 +235,8 @@ static void write_segment(const page_rays *r, size_t at, int width, int height, 
     const double unit = width / 800.0, thick = unit * (1.4 + 1.6 * sqrt(fmin(1.0, ray->weight)));
     fprintf(out, "<a id=\"s%zu\" href=\"#r%zu\" aria-label=\"", at + 1, at + 1);
     write_numbers(r, ray, at + 1, out);
-    fputs("\"><g clip-path=\"url(#image)\">", out);
+    /* Beams of several wavelengths add up where they coincide. */
+    fprintf(out, "\"><g%s clip-path=\"url(#image)\">", r->beams ? " class=\"light\"" : "");
     write_line(r, ray, "halo", thick + 2.0 * unit, out);
     write_line(r, ray, line_class(r, ray), thick, out);
     write_line(r, ray, "near", 12.0 * unit, out);

@@ -2,6 +2,7 @@
  * edges, with a depth test per pixel against opaque surfaces. */
 #include "render/inspect/beams.h"
 
+#include "base/budget.h"
 #include "optics/spectrum.h"
 #include "render/inspect/ray_line.h"
 #include "render/plan/sampling.h"
@@ -319,10 +320,19 @@ status beam_screen_expose(const scene *s, isa level, beam_screen *screen, diagno
 /* Tolerance of the depth test, relative: a segment starts or ends on a surface that must not hide it. */
 #define ON_SURFACE 1e-3
 
+/* What the lines bring to a pixel. Lines of several colours at one place mix as lights do: white light stays white. */
+typedef struct lines_at {
+    float rgb[3];     /* sum of the colours, weighted by cover */
+    float weight;     /* sum of the covers */
+    float brightness; /* sum of cover times the colour's largest channel */
+    float cover;      /* the largest of one line */
+} lines_at;
+
 typedef struct beam_canvas {
     const scene *s;
     const float *distance;
     image *img;
+    lines_at *lines; /* by pixel */
     camera_frame view;
     image_frame frame;
     double half_width; /* of a line, px */
@@ -344,14 +354,27 @@ status beams_hiding_scene(const scene *s, scene **out, diagnostic *why)
     return scene_set(opaque_scene, "render.integrator", integrator_with_layers(), why);
 }
 
-static void blend_pixel(beam_canvas *c, int x, int y, double distance, double cover, const double rgb[3])
+static void cover_pixel(beam_canvas *c, int x, int y, double distance, double cover, const double rgb[3])
 {
     const size_t pixel = (size_t)y * (size_t)c->img->width + (size_t)x;
     const double surface = c->distance[pixel];
     const double fraction = surface > 0.0 && distance > surface * (1.0 + ON_SURFACE) ? HIDDEN * cover : cover;
-    float *at = c->img->pixel + 3 * pixel;
+    lines_at *at = &c->lines[pixel];
     for (int k = 0; k < 3; k++)
-        at[k] = (float)(at[k] * (1.0 - fraction) + rgb[k] * fraction);
+        at->rgb[k] += (float)(fraction * rgb[k]);
+    at->weight += (float)fraction;
+    at->brightness += (float)(fraction * fmax(rgb[0], fmax(rgb[1], rgb[2])));
+    at->cover = fmaxf(at->cover, (float)fraction);
+}
+
+/* The mixed colour is as bright as its lines are in the mean. */
+static void blend_pixel(const lines_at *lines, float rgb[3])
+{
+    const double most = fmax((double)lines->rgb[0], fmax((double)lines->rgb[1], (double)lines->rgb[2]));
+    const double scale = most > 0.0 ? (double)lines->brightness / ((double)lines->weight * most) : 0.0;
+    const double cover = (double)lines->cover;
+    for (int k = 0; k < 3; k++)
+        rgb[k] = (float)((double)rgb[k] * (1.0 - cover) + (double)lines->rgb[k] * scale * cover);
 }
 
 /* The distance from the camera, in a pixel, of the point at the fraction t of the image's line a .. b. The ends' z are
@@ -378,7 +401,7 @@ static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const dou
             const double t = size > 0.0 ? fmin(1.0, fmax(0.0, (px * dx + py * dy) / size)) : 0.0;
             const double away = hypot(px - t * dx, py - t * dy), cover = fmin(1.0, c->half_width + 0.5 - away);
             if (cover > 0.0)
-                blend_pixel(c, x, y, distance_at(c, x, y, a, b, t), cover * strength, rgb);
+                cover_pixel(c, x, y, distance_at(c, x, y, a, b, t), cover * strength, rgb);
         }
 }
 
@@ -406,8 +429,19 @@ static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree,
 status beams_draw(const scene *s, isa level, const float *distance, image *img, diagnostic *why)
 {
     beam_canvas c = {.s = s, .distance = distance, .img = img, .view = camera_frame_of(s)};
+    const size_t pixels = (size_t)img->width * (size_t)img->height;
+    TRY(memory_budget_check(pixels * sizeof *c.lines, "use a smaller image", why,
+                            "the lines of beams in %d x %d pixels", img->width, img->height));
+    c.lines = calloc(pixels, sizeof *c.lines);
+    if (!c.lines)
+        return out_of_memory(why);
     c.half_width = fmax(0.6, img->height / 800.0);
     /* A line whose middle is just outside the image still covers pixels. */
     c.frame = image_frame_of(img->width, img->height, c.half_width + 1.0);
-    return beams_each_ray(s, level, 0, draw_ray, &c, why);
+    const status code = beams_each_ray(s, level, 0, draw_ray, &c, why);
+    for (size_t i = 0; i < pixels && code == STATUS_OK; i++)
+        if (c.lines[i].cover > 0.0F)
+            blend_pixel(&c.lines[i], img->pixel + 3 * i);
+    free(c.lines);
+    return code;
 }

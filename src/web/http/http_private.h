@@ -73,7 +73,7 @@ struct http_request {
     size_t body_size, body_room, received;
     bool head_read;
     bool length_unclear; /* nobody knows where the body ends: it is not read */
-    http_reply reply; /* if set before the body arrives, the body is discarded */
+    http_reply reply;    /* if set before the body arrives, the body is discarded */
 };
 
 /* --- http_guard.c: checks a request. Returns 0, or the HTTP code with the reply set. --- */

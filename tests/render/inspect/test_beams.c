@@ -469,6 +469,35 @@ static void a_drawn_beam_passes_through_a_surface(void **state)
     scene_destroy(s);
 }
 
+/* Light of two colours at one place: red and green of equal cover are yellow, in either order; and a white beam, whose
+ * wavelengths coincide in a vacuum, has no colour of one of them. */
+static void colours_at_one_place_mix(void **state)
+{
+    (void)state;
+    static const char *const orders[] = {"a: {color: [1, 0, 0], %s}, b: {color: [0, 1, 0], %s}",
+                                         "a: {color: [0, 1, 0], %s}, b: {color: [1, 0, 0], %s}"};
+    const char *where = "position: [-1, 0.5, 0], direction: [1, 0, 0], rays: 1";
+    for (int i = 0; i < 3; i++) {
+        char beams[400], text[600];
+        snprintf(beams, sizeof beams, orders[i % 2], where, where);
+        if (i == 2)
+            snprintf(beams, sizeof beams, "a: {white: on, wavelengths: 21, %s}", where);
+        snprintf(text, sizeof text, "beams: {%s}\n", beams);
+        scene *s = scene_from(text);
+        set_all(s, "camera.position=0,0,-5 camera.target=0,0,0 camera.fov_deg=90 render.width=64 render.height=64");
+        image *img = drawn(s, 64, 64, 0.0F);
+        const float *at = img->pixel + 3 * (28 * 64 + 40); /* a cover of 0.8, as above */
+        if (i < 2) {
+            assert_true(fabs((double)at[0] - 0.84) < 1e-6 && fabs((double)at[1] - 0.84) < 1e-6);
+            assert_true(fabs((double)at[2] - 0.04) < 1e-6);
+        } else {
+            assert_true(fmin(fmin((double)at[0], (double)at[1]), (double)at[2]) > 0.4); /* red alone: 0.04 */
+        }
+        image_destroy(img);
+        scene_destroy(s);
+    }
+}
+
 /* What hides beams: the opaque solids of the scene, whose distances the layers of the integrator aov have. */
 static void only_opaque_solids_hide_beams(void **state)
 {
@@ -587,6 +616,7 @@ int main(void)
         cmocka_unit_test(a_screen_shows_where_and_in_which_colour),
         cmocka_unit_test(a_drawn_beam_is_at_its_pixels),
         cmocka_unit_test(a_drawn_beam_passes_through_a_surface),
+        cmocka_unit_test(colours_at_one_place_mix),
         cmocka_unit_test(only_opaque_solids_hide_beams),
         cmocka_unit_test(the_remedy_for_a_ray_of_too_many_segments_is_the_beams_own),
         cmocka_unit_test(the_work_of_a_screen_is_limited),

@@ -29,13 +29,15 @@ export function createBenchOverlay(lab, bench) {
     const { chosen, points } = bench;
     layer.replaceChildren(
       ...pieces.map((each) => line(each, 'bench-halo')),
-      ...pieces.map((each) => line(each, each.segment === chosen ? 'bench-ray chosen' : 'bench-ray')),
+      svg('g', { class: 'bench-rays' }, ...pieces.map((each) => line(each, nameOf(each.segment)))),
       ...(bench.fan ? fanMarks(bench.fan, { stroke, dot }) : []),
       ...(bench.screen ? outline(bench.screen) : []),
       ...(chosen ? atHit(chosen) : []),
       ...measured(points),
     );
   }
+
+  const nameOf = (segment) => (segment === bench.chosen ? 'bench-ray chosen' : 'bench-ray');
 
   /* The part of a line on the canvas. */
   function seen(line) {
