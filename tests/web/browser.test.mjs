@@ -163,7 +163,7 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.setNumber('liquid.ior', 1.6);
     const changed = await film(screen);
-    await screen.until(() => sessionStorage.getItem('cuvette.unsaved'));
+    await screen.until(() => sessionStorage.getItem('cuvette.scene'));
     const workers = screen.page.workers();
     const which = await Promise.all(
       workers.map((each) => each.evaluate(() => typeof startLab === 'function' && lab !== null)),
@@ -186,6 +186,33 @@ export const cases = {
     await screen.page.locator('#rescue').getByRole('button', { name: 'Open' }).click();
     await screen.until((hash) => window.lab.image.film_hash === hash, changed);
     t.equal(await screen.page.locator('#rescue').isVisible(), false, 'the offer after it was accepted');
+  },
+
+  'a reload, Back and Forward show the scene and the lesson with their changes': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    const { page } = screen;
+    const kept = () => screen.until(() => sessionStorage.getItem('cuvette.scene'));
+    const shows = (hash) => screen.until((wanted) => window.lab?.image?.film_hash === wanted, hash);
+    await screen.setNumber('liquid.ior', 1.6);
+    const changed = await film(screen);
+    await kept();
+    await page.reload();
+    await shows(changed);
+    t.equal(await page.locator('#rescue').isVisible(), false, 'an offer of what is shown');
+    await page.goto('about:blank');
+    await page.goBack();
+    await shows(changed);
+    const [first] = (await lab.get('/api/lessons')).lessons;
+    await page.goto('about:blank');
+    await page.goto(`${lab.home}#lesson=${first.name}`);
+    await page.getByRole('heading', { name: first.title }).waitFor();
+    await screen.settled();
+    await screen.button('Show the measurement').click();
+    await page.locator('.lesson-value').waitFor();
+    await page.reload();
+    await page.locator('.lesson-value').waitFor();
+    t.equal(await page.evaluate(() => location.hash), `#lesson=${first.name}`, 'the address names the lesson');
   },
 
   'a lesson on a phone': async (t) => {

@@ -24,7 +24,18 @@ export const cases = {
     await screen.until(() => window.lab?.state?.undo && window.lab.image);
     await screen.settled();
     t.equal(await film(), changed, 'the film of the link');
-    t.equal(await screen.page.evaluate(() => location.hash), '', 'the address no longer has the scene');
+    const address = () => screen.page.evaluate(() => location.hash);
+    t.equal(await address(), `${fragment}${code}`, 'the address names the scene');
+    await screen.setNumber('liquid.ior', 1.7);
+    const own = await film();
+    const shows = (wanted) => screen.until((hash) => window.lab?.image?.film_hash === hash, wanted);
+    await screen.page.reload();
+    await shows(own);
+    await screen.page.goto('about:blank');
+    await screen.page.goBack();
+    await shows(own);
+    await lab.post('/api/undo', {});
+    await shows(changed);
     t.equal((await lab.get('/api/state')).file, null, 'the scene of a link has no file');
   },
 

@@ -2,53 +2,55 @@
  * that changes cannot be kept.
  * exports: createRescue(root, lab) */
 
+import { returned, session } from './shared/address.js';
 import { ask, button, element, icon, replace } from './shared/ui.js';
 
-/* --- the unsaved scene of a laboratory in the browser, which ends with its page ---
- * The scene is kept as the code of a link, and the next page of the tab offers it. A scene that reads files has no such
- * code and is not kept. */
+/* --- the scene of a laboratory in the browser, which ends with its page ---
+ * The scene is kept as the code of a link. After a reload, Back or Forward it is shown again; another page of the tab
+ * offers it if it was not saved. A scene that reads files has no such code and is not kept. */
 
-const KEY = 'cuvette.unsaved';
+const KEY = 'scene';
 const REST_MS = 1000; /* the scene is kept when it has not changed for this time */
 
-/* Storage may be forbidden or full: then nothing is kept. */
-function stored(act) {
-  try {
-    return act(sessionStorage);
-  } catch {
-    return null;
-  }
-}
-
-function keepUnsaved(lab) {
+function keepScene(lab) {
   let found = null; /* the scene of the page before */
   let timer = 0;
   if (lab.engine.kind === 'browser') {
-    found = stored((storage) => JSON.parse(storage.getItem(KEY)));
+    found = session.get(KEY);
+    lab.on('connection', (value) => {
+      const last = session.get(KEY);
+      if (value === 'lost' && last) session.set(KEY, { ...last, stopped: true });
+    });
     lab.on('state', () => {
       clearTimeout(timer);
       timer = setTimeout(keep, REST_MS);
     });
   }
+  const opensItself = () => Boolean(found) && returned() && !found.stopped; /* it may be what stopped the engine */
   return {
-    offer: () => found && { id: KEY, ...found },
-    async open() {
-      await lab.change('/api/open', { link: `#scene=${found.code}` });
-      lab.panels.reveal();
+    offer: () => found?.unsaved && !opensItself() && { id: KEY, ...found },
+    opensItself,
+    /* send: lab.change, or lab.post, after which the address goes on to name what it names. */
+    async open(send = lab.change) {
+      const { code } = found;
       found = null;
+      await send('/api/open', { link: `#scene=${code}` });
+      lab.panels?.reveal();
     },
     drop() {
       found = null;
-      stored((storage) => storage.removeItem(KEY));
+      session.drop(KEY);
     },
   };
 
+  /* The scene with which the page began needs no copy. */
   async function keep() {
-    const { saved, unsaved, undo, title, file } = lab.state;
-    if (saved && undo) stored((storage) => storage.removeItem(KEY));
-    if (!unsaved) return;
+    const { undo, unsaved, title, file, generation } = lab.state;
+    if (!undo) return session.drop(KEY);
     const { code } = await lab.get('/api/link').catch(() => ({}));
-    if (code) stored((storage) => storage.setItem(KEY, JSON.stringify({ code, time: Date.now(), title, file })));
+    if (generation !== lab.state.generation) return;
+    if (!code) return session.drop(KEY);
+    return session.set(KEY, { code, time: Date.now(), title, file, unsaved });
   }
 }
 
@@ -58,7 +60,7 @@ const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: 'me
 
 export function createRescue(root, lab) {
   let shown = ''; /* key of the bar's content, which is drawn only if it changes */
-  const ours = keepUnsaved(lab);
+  const ours = keepScene(lab);
   let reported = false; /* one report of unkept changes is enough */
 
   function fill(key, ...parts) {
@@ -125,10 +127,27 @@ export function createRescue(root, lab) {
     reported = true;
   }
 
+  lab.rescue = { hasScene };
   lab.on('restarted', () => {
     reported = false;
   });
   lab.on('state', show);
+
+  /* Whether the scene that the page showed before a reload is there: the program still has it, or it is opened again.
+   * The first call of two opens it. */
+  let opening = null;
+  function hasScene() {
+    opening ??= (async () => {
+      if (lab.engine.kind !== 'browser') return Boolean((await lab.get('/api/state')).undo);
+      if (!ours.opensItself()) return false;
+      await ours.open(lab.post);
+      return true;
+    })().catch((error) => {
+      lab.fail(error);
+      return false;
+    });
+    return opening;
+  }
 
   function show({ rescued = [], unkept }) {
     const offers = [...rescued, ours.offer()].filter(Boolean);

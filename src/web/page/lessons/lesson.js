@@ -2,6 +2,7 @@
  * exports: createLesson(root, lab, lesson, {back, again}) -> {shown(), end()}
  *   back(), again(): to the gallery, or to the start of the lesson */
 
+import { session } from '../shared/address.js';
 import { whyUnused } from '../edit/param_row.js';
 import { commandRow } from '../shared/commands.js';
 import { theoryChart } from '../shared/theory_chart.js';
@@ -35,8 +36,9 @@ export function createLesson(root, lab, lesson, { back, again }) {
   );
   const lost = element('div', { 'aria-live': 'polite' });
   let measured = null;
-  let open = false; /* the measurement is shown, after the prediction or without it */
-  let predicted = null;
+  const before = session.get('lesson'); /* of this page before a reload */
+  /* open: the measurement is shown, after the prediction or without it */
+  let { open, predicted } = before?.name === lesson.name ? before : { open: false, predicted: null };
   let timer = 0;
   let asked = 0;
 
@@ -93,6 +95,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
   function show(prediction) {
     open = true;
     predicted = prediction ?? predicted;
+    session.set('lesson', { name: lesson.name, open, predicted });
     draw();
   }
 

@@ -2,6 +2,7 @@
  * that was chosen, next to the image. exports: panel */
 
 import { thumbnail } from '../shared/images.js';
+import { name, named, returned, session } from '../shared/address.js';
 import { namesScene } from '../shared/share.js';
 import { element, empty, notice, replace } from '../shared/ui.js';
 import { createLesson } from './lesson.js';
@@ -9,7 +10,7 @@ import { createLesson } from './lesson.js';
 let place = null;
 let lesson = null; /* the view of the chosen lesson; null in the gallery */
 let loaded = false;
-let wanted = null; /* the lesson of a link: the fragment #lesson=NAME of the page's address */
+let wanted = ''; /* the lesson that the page's address names */
 
 const cover = (on) => document.getElementById('workspace').classList.toggle('wide', on);
 
@@ -27,6 +28,7 @@ function card(lab, one) {
 async function gallery(lab) {
   lesson?.end();
   lesson = null;
+  if (!wanted && named().lesson) name('');
   cover(true);
   replace(place, empty('Reading the lessons …'));
   try {
@@ -46,9 +48,10 @@ async function gallery(lab) {
           )
         : empty('There are no lessons: the laboratory is not installed completely.'),
     );
-    const asked = lessons.find(({ name }) => name === wanted);
-    wanted = null;
-    if (asked) await choose(lab, asked);
+    const asked = lessons.find((one) => one.name === wanted);
+    wanted = '';
+    if (asked && returned() && (await lab.rescue.hasScene())) show(lab, asked);
+    else if (asked) await choose(lab, asked);
   } catch (error) {
     replace(place, notice(error.message, { kind: 'error', remedy: error.remedy }));
   }
@@ -59,12 +62,18 @@ async function choose(lab, one) {
     if (lab.state && !lab.state.saved) lab.say('Undo restores the previous scene.');
     await lab.change(`/api/lessons/${encodeURIComponent(one.name)}/open`, {});
     lab.choice?.choose('');
-    cover(false);
-    lesson?.end();
-    lesson = createLesson(place, lab, one, { back: () => gallery(lab), again: () => choose(lab, one) });
+    session.drop('lesson');
+    show(lab, one);
   } catch (error) {
     lab.fail(error);
   }
+}
+
+/* The view of a lesson whose scene is shown. */
+function show(lab, one) {
+  cover(false);
+  lesson?.end();
+  lesson = createLesson(place, lab, one, { back: () => gallery(lab), again: () => choose(lab, one) });
 }
 
 export const panel = {
@@ -76,10 +85,8 @@ export const panel = {
   },
   /* A laboratory that opens neither a file nor a link starts with the gallery. */
   start(lab) {
-    wanted = /^#lesson=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
-    if (wanted)
-      history.replaceState(null, '', location.pathname + location.search); // a reload does not open the lesson again
-    else if (namesScene()) return;
+    wanted = named().lesson;
+    if (!wanted && (namesScene() || returned())) return;
     const end = lab.on('state', (state) => {
       end();
       if (wanted || (!state.file && !state.undo)) lab.panels.select('lessons');

@@ -3,30 +3,31 @@
  * the laboratory may hold a code, too (report/page.h).
  * exports:
  *   namesScene()        whether the page or its address has a scene, or the address names a file (engine_boot.js)
- *   openLink(lab)       opens that scene, and the scene of each later fragment of the address
+ *   openLink(lab)       opens that scene, and the scene of each later fragment of the address; after a reload only if
+ *                       the engine does not have it any more
  *   acceptDrops(lab)    opens a file that is dropped on the page
  *   share(lab)          the dialog: copies a link, saves a file with the scene, and opens such a file */
 
+import { name, named, returned } from './address.js';
 import { saveFile, savePage } from './save_file.js';
 import { button, copy, dialog, element, notice, replace } from './ui.js';
 
 /* --- links --- */
 
 const embedded = document.getElementById('cuvette-scene')?.textContent;
-const hasLink = () => location.hash.startsWith('#scene=');
-export const namesScene = () => Boolean(embedded) || hasLink() || new URLSearchParams(location.search).has('scene');
+export const namesScene = () => Boolean(embedded || named().scene) || new URLSearchParams(location.search).has('scene');
 
 export async function openLink(lab) {
   addEventListener('hashchange', () => openFragment(lab));
+  lab.on('opened', ({ link, lesson }) => name(link || (lesson ? `#lesson=${lesson}` : '')));
+  if (returned() && (await lab.rescue.hasScene())) return;
   if (embedded) await openText(lab, `#scene=${embedded}`);
   else await openFragment(lab);
 }
 
 async function openFragment(lab) {
-  const link = location.hash;
-  if (!hasLink()) return;
-  history.replaceState(null, '', location.pathname + location.search); // a reload does not open it again
-  await openText(lab, link);
+  const link = named().scene;
+  if (link) await openText(lab, link);
 }
 
 /* A page within another one, as in a notebook, has no address: only the fragment is copied. */

@@ -14,7 +14,7 @@
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, image (a pass is displayed), pass (a pass is available),
  *                                       slime, study, video, connection, restarted (a new server: all earlier data is
- *                                       void), view (the image's placement changed), tool, panel (one was selected)
+ *                                       void), opened ({file, link, lesson, new}: another scene), view (the image's placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
  *   lab.param(path)                     the row of that parameter; undefined if there is none
  *   lab.object(name)                    the object of that name; undefined if there is none
@@ -100,7 +100,18 @@ export function createLab() {
     refresh,
   };
   if (engine.reconnects) setInterval(pulse, PULSE_MS);
-  lab.change = createQueue(api.post, imageOf);
+  const change = createQueue(api.post, imageOf);
+  lab.change = (path, body, options) => {
+    const reply = change(path, body, options);
+    const lesson = /^\/api\/lessons\/(.*)\/open$/.exec(path)?.[1];
+    if (path === '/api/open' || lesson)
+      reply.then(
+        () => emit('opened', { ...body, lesson }),
+        () => undefined,
+      );
+    return reply;
+  };
+  lab.change.idle = change.idle;
   lab.set = (values, gesture) =>
     lab
       .change(
