@@ -211,7 +211,7 @@ _cuvette()
         ;;
     lens)
         if [[ $current == -* && ${COMP_WORDS[2]-} == report ]]; then
-            _cuvette_words --json --csv --figure --system --glasses --field --frequency --fan --spot --wave --help --usage --version
+            _cuvette_words --json --csv --figure --system --glasses --field --wavelength --frequency --fan --spot --wave --help --usage --version
         elif [[ $current == -* ]]; then
             _cuvette_words --output --glasses --system --help --usage --version
         else

@@ -26,8 +26,7 @@ typedef struct report_request {
     const char *glass_file[GLASS_FILES_MAX];
     size_t glass_files;
     lens_options options;
-    double field[LENS_LIST_MAX]; /* replace those of the lens, if field_count is above 0 */
-    size_t field_count;
+    lens_light light;
     int64_t fan, spot, wave;
     bool json, csv;
 } report_request;
@@ -42,17 +41,28 @@ static status parse_frequency(const command_option *o, void *context, const char
                : options_wrong("--frequency", value, why, "use a number above 0", "out of range");
 }
 
+static status parse_list(const char *name, const char *value, double *list, size_t *count, diagnostic *why)
+{
+    *count = 1;
+    for (const char *at = value; *at; at++)
+        *count += *at == ',';
+    if (*count > LENS_LIST_MAX)
+        return options_wrong(name, value, why, "give fewer", "more than %d numbers", LENS_LIST_MAX);
+    return options_reals(name, value, "numbers with commas between", *count, list, why);
+}
+
 static status parse_field(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    report_request *r = context;
+    lens_light *with = &((report_request *)context)->light;
     (void)o;
-    size_t count = 1;
-    for (const char *at = value; *at; at++)
-        count += *at == ',';
-    if (count > LENS_LIST_MAX)
-        return options_wrong("--field", value, why, "give fewer", "more than %d fields", LENS_LIST_MAX);
-    r->field_count = count;
-    return options_reals("--field", value, "numbers with commas between", count, r->field, why);
+    return parse_list("--field", value, with->field, &with->fields, why);
+}
+
+static status parse_wavelength(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    lens_light *with = &((report_request *)context)->light;
+    (void)o;
+    return parse_list("--wavelength", value, with->lambda_nm, &with->wavelengths, why);
 }
 
 static status parse_glasses(const command_option *o, void *context, const char *value, diagnostic *why)
@@ -79,6 +89,9 @@ static const command_option options[] = {
      .store = parse_glasses},
     {"field", 0, "LIST", "fields along +Y, such as 0,10,20, instead of those of the lens: degrees, or heights",
      .store = parse_field},
+    {"wavelength", 0, "LIST",
+     "wavelengths in nm, such as 588,486,656, the primary one first, instead of those of the lens",
+     .store = parse_wavelength},
     {"frequency", 0, "N", "highest frequency of the MTF, cycles per mm (default: 100, or the cutoff)",
      .store = parse_frequency},
     {"fan", 0, "N", "number of rays in half a ray fan (default: 20)", OPTION_FILLS(option_integer, report_request, fan),
@@ -208,9 +221,7 @@ static status report_on(report_request *r, diagnostic *why)
     if (!lens_file_named(r->path) && r->glass_files > 0)
         return options_wrong("--glasses", r->glass_file[0], why, "omit it", "a scene names its own files of glasses");
     status code = lens_open(r->path, r->system, &glasses, &p, &s, &place, why);
-    for (size_t i = 0; code == STATUS_OK && i < r->field_count; i++)
-        p.field[i] = (lens_field){0.0, r->field[i], 1.0}, p.vignetting[i] = (lens_vignetting){0};
-    p.field_count = r->field_count ? r->field_count : p.field_count;
+    THEN(code, lens_set_light(&p, &r->light, why));
     THEN(code, lens_report_make(&p, &place, level, &r->options, &report, why));
     if (code == STATUS_OK)
         terminal_note_of(r->path, p.note);

@@ -8,14 +8,10 @@
 /* Reports on a copy, in which the stop has no solid. */
 static status make_report(const cuvette_scene *s, const char *system, lens_report *out, diagnostic *why)
 {
-    lens_prescription p = lens_prescription_empty();
-    lens_place place;
     isa level = ISA_BASE;
     scene *copy = scene_clone(s->model);
     status code = copy ? isa_choose(&level, why) : out_of_memory(why);
-    THEN(code, lens_place_in_scene(copy, system, &p, &place, why));
-    THEN(code, lens_report_make(&p, &place, level, &lens_options_usual, out, why));
-    lens_prescription_release(&p);
+    THEN(code, lens_report_of_scene(copy, system, &(lens_light){.fields = 0}, level, &lens_options_usual, out, why));
     scene_destroy(copy);
     return code;
 }

@@ -73,6 +73,17 @@ status lens_place_in_scene(scene *s, const char *system, lens_prescription *p, l
 status lens_open(const char *path, const char *system, const lens_glasses *glasses, lens_prescription *p, scene **s,
                  lens_place *place, diagnostic *why);
 
+/* Light instead of that of the lens: fields along +Y, in the prescription's own unit, and wavelengths, the primary one
+ * first. A list of 0 keeps the lens's own. */
+typedef struct lens_light {
+    double field[LENS_LIST_MAX], lambda_nm[LENS_LIST_MAX]; /* wavelengths: 200 .. 2000 */
+    size_t fields, wavelengths;
+} lens_light;
+status lens_set_light(lens_prescription *p, const lens_light *with, diagnostic *why);
+
 status lens_report_make(const lens_prescription *p, const lens_place *at, isa level, const lens_options *options,
                         lens_report *out, diagnostic *why);
+/* The report on a loaded scene's lens (lens_place_in_scene). */
+status lens_report_of_scene(scene *s, const char *system, const lens_light *with, isa level,
+                            const lens_options *options, lens_report *out, diagnostic *why);
 void lens_report_release(lens_report *r);

@@ -357,3 +357,35 @@ status lens_report_make(const lens_prescription *p, const lens_place *at, isa le
         lens_report_release(out);
     return code;
 }
+
+status lens_set_light(lens_prescription *p, const lens_light *with, diagnostic *why)
+{
+    for (size_t i = 0; i < with->fields; i++)
+        p->field[i] = (lens_field){0.0, with->field[i], 1.0}, p->vignetting[i] = (lens_vignetting){0};
+    p->field_count = with->fields ? with->fields : p->field_count;
+    for (size_t i = 0; i < with->wavelengths; i++) {
+        const double nm = with->lambda_nm[i];
+        if (!(nm >= 200.0 && nm <= 2000.0))
+            return diagnose(why, STATUS_BAD_INPUT, "give nanometres, from 200 to 2000",
+                            "the wavelength %g is out of range", nm);
+        p->wavelength[i] = (lens_wavelength){nm, 1.0};
+    }
+    if (with->wavelengths) {
+        p->wavelength_count = with->wavelengths;
+        p->primary = 0;
+    }
+    return STATUS_OK;
+}
+
+status lens_report_of_scene(scene *s, const char *system, const lens_light *with, isa level,
+                            const lens_options *options, lens_report *out, diagnostic *why)
+{
+    lens_prescription p = lens_prescription_empty();
+    lens_place place;
+    *out = (lens_report){0};
+    status code = lens_place_in_scene(s, system, &p, &place, why);
+    THEN(code, lens_set_light(&p, with, why));
+    THEN(code, lens_report_make(&p, &place, level, options, out, why));
+    lens_prescription_release(&p);
+    return code;
+}

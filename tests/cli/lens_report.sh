@@ -113,6 +113,12 @@ refuses "two forms at once" "exclude each other" triplet.csv --csv --json
 refuses "a figure of another format" "use a name that ends in .png, .svg or .pdf" triplet.csv --figure page.gif
 refuses "samples that are no power of two" "8, 16, 32" triplet.csv --wave 40
 refuses "a field that is no number" "--field" triplet.csv --field 0,x
+report triplet.csv "${quick[@]}" --csv >own
+sed 's/^wavelength_nm.*/wavelength_nm, 500/' triplet.csv >green.csv
+report green.csv "${quick[@]}" --wavelength 550,480,650 --csv >given
+cmp -s own given && ! cmp -s own <(report green.csv "${quick[@]}" --csv)
+verdict $? "wavelengths of an option are as those of the file" "$(diff own given | head -n 4)"
+refuses "a wavelength of radio" "200 to 2000" triplet.csv --wavelength 1e9
 refuses "a frequency of 0" "above 0" triplet.csv --frequency 0
 printf 'radius, thickness, medium, diameter\n0, 5, 1.5, 20\n0, 50, , 20\n' >flat.csv
 refuses "a lens without a focus" "afocal" flat.csv
