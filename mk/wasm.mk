@@ -12,12 +12,10 @@ wasm_isas := $(WASM_ISAS)
 # Browsers with 128-bit vectors have these too: conversions without a test for traps, copies of memory.
 wasm_isa_flags_simd128 := -msimd128 -mnontrapping-fptoint -mbulk-memory -msign-ext
 
-# No studies, which measure a machine, no reports of lenses, which need KissFFT, and nothing of the operating system;
-# src/wasm has what replaces them.
+# No studies, which measure a machine, and nothing of the operating system; src/wasm has what replaces them.
 wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c src/base/os_confine% \
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
-  src/scene/assets/mesh_file.c src/base/worker_pool.c src/lens/% src/report/lens_rows.c \
-  src/engine/lens.c
+  src/scene/assets/mesh_file.c src/base/worker_pool.c
 wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c library.c request.c \
   send.c watch.c) $(addprefix src/web/api/,api_studies.c api_study_% api_video.c) \
   $(addprefix src/web/session/,confine.c figures.c rescue.c studies.c study_files.c videos.c) \
@@ -29,7 +27,7 @@ wasm_flags = -std=gnu17 -D_GNU_SOURCE -O3 $(arithmetic) -Isrc -I$(wasm)/librarie
   -DCUVETTE_VERSION='"$(version)"' -DCUVETTE_COMPILER_FLAGS='"wasm: -O3 $(arithmetic)"' \
   $(filter-out -Wvla,$(warnings)) -Wno-enum-float-conversion -Wno-shorten-64-to-32 -Wno-pass-failed $(errors)
 wasm_scripts := $(addprefix src/wasm/,memory.js lab_worker.js tile_worker.js worker.js)
-wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a OpenEXRCore.a yaml.a jansson.a z.a)
+wasm_libs := $(addprefix $(wasm)/libraries/lib/lib,png.a jpeg.a OpenEXRCore.a yaml.a jansson.a kissfft.a z.a)
 
 .PHONY: wasm
 ## wasm: the laboratory as WebAssembly: build/wasm

@@ -62,6 +62,9 @@ char *wasm_scene_names(const struct cuvette_scene *scene);                   /* 
 char *wasm_scene_realism(const struct cuvette_scene *scene);                 /* {metrics: [..], curves: [..]} */
 char *wasm_scene_curve(const struct cuvette_scene *scene, const char *name); /* [[x, measured, theory]] */
 
+/* The object of `cuvette lens report --json`, without the name of a file; system: "" for all lenses. */
+char *wasm_scene_lens(const struct cuvette_scene *scene, const char *system);
+
 /* A render in turns. coarse: the divisor of width and height, 1 for the full image. Until the last turn, or until
  * wasm_render_destroy, the scene refuses changes. A turn returns a status; it ends after budget_s or somewhat later. */
 typedef struct wasm_render wasm_render;

@@ -59,6 +59,11 @@ cp "$folder/include/yaml.h" "$prefix/include"
 compile yaml "$folder/src" api dumper emitter loader parser reader scanner writer -- -DYAML_VERSION_MAJOR=0 \
     -DYAML_VERSION_MINOR=2 -DYAML_VERSION_PATCH=5 '-DYAML_VERSION_STRING="0.2.5"'
 
+folder=$(unpacked kissfft)
+mkdir -p "$prefix/include/kissfft"
+cp "$folder"/kiss_fft{,nd}.h "$prefix/include/kissfft"
+compile kissfft "$folder" kiss_fft kiss_fftnd
+
 with_cmake jansson jansson -DJANSSON_BUILD_DOCS=OFF -DJANSSON_WITHOUT_TESTS=ON -DJANSSON_EXAMPLES=OFF
 cp "$work"/jansson/include/*.h "$prefix/include"
 cp "$work"/jansson/lib/libjansson.a "$prefix/lib"

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -45,6 +45,27 @@ const BAD = [
   'render: {width: 0}\n',
   'materials: {a: {ior: x}}\n',
 ];
+
+/* The largest difference of two reports on lenses, relative to the largest number of a column. Point images are of
+ * single precision. */
+function differenceOf(a, b) {
+  assert.deepEqual(Object.keys(b), Object.keys(a));
+  let most = 0;
+  for (const [section, { values, units }] of Object.entries(a)) {
+    assert.deepEqual(b[section].units, units);
+    const single = /encircled|psf|mtf-diffraction|wavefront/.test(section) ? 1e-3 : 1;
+    for (const [name, column] of Object.entries(values)) {
+      const [one, other] = [[column].flat(), [b[section].values[name]].flat()];
+      assert.equal(other.length, one.length, `${section} ${name}`);
+      const size = Math.max(1e-6, ...one.map((value) => Math.abs(value ?? 0)));
+      for (const [i, value] of one.entries()) {
+        assert.equal(other[i] === null, value === null, `${section} ${name} ${i}`);
+        most = Math.max(most, (single * Math.abs(value - other[i])) / size);
+      }
+    }
+  }
+  return most;
+}
 
 for (const isa of ISAS)
   describe(isa, () => {
@@ -168,6 +189,21 @@ for (const isa of ISAS)
       const { metrics, curves } = scene.realism();
       assert.ok(metrics.every(({ verdict }) => verdict !== 'FAIL'));
       assert.equal(scene.curve(curves[0].name)[0].length, 3);
+    });
+
+    test('the report on a lens is that of the command', () => {
+      for (const name of ['cooke-triplet', 'landscape']) {
+        const folder = mkdtempSync(join(tmpdir(), 'cuvette-wasm-'));
+        const file = join(folder, `${name}.yaml`);
+        const run = (...words) =>
+          execFileSync(`${ROOT}build/cuvette`, ['lens', ...words], { encoding: 'utf8', maxBuffer: 1 << 26 });
+        run(`${ROOT}experiments/lenses/${name}.csv`, '-o', file);
+        const { sections } = JSON.parse(run('report', file, '--json'));
+        const scene = cuvette.Scene.read(readFileSync(file, 'utf8'));
+        rmSync(folder, { recursive: true });
+        assert.ok(differenceOf(sections, scene.lens().sections) < 1e-9, name);
+      }
+      assert.throws(() => readScene(cuvette, 'rod', SMALL).lens(), /no lens/);
     });
 
     test('slimes: advanced in steps or at once, grabbed, moved, released', async () => {

@@ -4,7 +4,7 @@
 
 const SCENE =
   'clone set get parameters text hints check names addLight addMaterial addSolid addMesh remove rename query trace ' +
-  'fan realism curve motion';
+  'fan realism curve lens motion';
 
 export const CALLS = {
   Cuvette: ['random', 'engine', 'readScene', 'createScene', 'facts'],

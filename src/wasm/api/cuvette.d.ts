@@ -109,6 +109,20 @@ export interface Metric {
   error: number | null;
   tolerance: number | null;
 }
+/** Columns of a section: one value, or one for each record; null: none. */
+export interface LensReport {
+  schema: number;
+  lens: string;
+  sections: Record<
+    string,
+    {
+      meaning: string;
+      x?: string;
+      units: Record<string, string>;
+      values: Record<string, number | null | (number | null)[]>;
+    }
+  >;
+}
 export interface Curve {
   name: string;
   x: string;
@@ -197,6 +211,7 @@ interface SceneOf<R> {
   fan(rule: FanRule, options?: { lambda_nm?: number }): Later<R, Fan>;
   realism(): Later<R, { metrics: Metric[]; curves: Curve[] }>;
   curve(name: string): Later<R, Vector[]>; // x, measured, theory
+  lens(system?: string): Later<R, LensReport>;
   motion(): Later<R, MotionOf<R>>;
   destroy(): void;
 }

@@ -1,8 +1,10 @@
-/* A scene's texts, parameters, hints and names, its optics compared with theory, and its slimes in motion, for scripts;
- * and random numbers. */
+/* A scene's texts, parameters, hints and names, its optics compared with theory, the report on its lens, and its slimes
+ * in motion, for scripts; and random numbers. */
+#include "base/array.h"
 #include "base/json_build.h"
 #include "base/random.h"
 #include "report/json.h"
+#include "report/param_rows.h"
 #include "wasm/api/results.h"
 #include "wasm/exports.h"
 
@@ -147,6 +149,29 @@ char *wasm_scene_curve(const cuvette_scene *scene, const char *name)
         return results_text(list);
     json_decref(list);
     return NULL;
+}
+
+static bool add_number(void *context, const cuvette_lens_number *one)
+{
+    lens_report *r = context;
+    if (r->failed || !GROW(r->row, r->room, r->count + 1))
+        return !(r->failed = true);
+    r->row[r->count++] = (lens_row){one->section, one->surface,  one->field, one->lambda_nm,
+                                    one->x,       one->quantity, one->unit,  one->value};
+    return true;
+}
+
+char *wasm_scene_lens(const cuvette_scene *scene, const char *system)
+{
+    lens_report report = {0};
+    diagnostic why = {.line = 0};
+    cuvette_status code = results_note(
+        cuvette_scene_each_lens_number(scene, *system ? system : NULL, add_number, &report, &results_last));
+    if (code == CUVETTE_OK && report.failed)
+        code = results_report(out_of_memory(&why), &why);
+    char *text = code == CUVETTE_OK ? results_text(lens_json(&report, system)) : NULL;
+    lens_report_release(&report);
+    return text;
 }
 
 void wasm_random(uint32_t key_low, uint32_t key_high, uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t *words)

@@ -202,6 +202,12 @@ export class Scene extends Handle {
     return this.in().json('wasm_scene_curve', this.at, name);
   }
 
+  /* The report on the scene's lens, as `cuvette lens report --json`; system: the first word of the names of its
+   * solids. */
+  lens(system = '') {
+    return this.in().json('wasm_scene_lens', this.at, system);
+  }
+
   /* The motion of the scene's slimes from time 0. */
   motion() {
     return new Motion(this);
