@@ -6,6 +6,7 @@
 #include "geometry/shapes/shape.h"
 #include "geometry/solid.h"
 #include "lint/lint.h"
+#include "optics/coating.h"
 #include "report/json.h"
 #include "report/report.h"
 #include "scene/model/medium.h"
@@ -105,6 +106,15 @@ static json_t *choices(const param *row)
     return list;
 }
 
+/* The names of the designs of coatings. */
+static json_t *designs(void)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; list && i < coating_designs_count(); i++)
+        json_add(&list, json_string(coating_design_at(i)->name));
+    return list;
+}
+
 static json_t *shapes(const param *row)
 {
     json_t *list = json_array();
@@ -166,6 +176,8 @@ static json_t *line_json(const param_line *l, bool has_value, const json_t *init
         bad |= json_object_set_new(o, "slider", slider(row, first, l->value));
     bad |= row->coefficient ? json_object_set_new(o, "coefficient", json_true()) : 0;
     bad |= row->choices ? json_object_set_new(o, "choices", choices(row)) : 0;
+    bad |= row->type == PARAM_LAYERS ? json_object_set_new(o, "designs", designs()) : 0;
+    bad |= row->names ? json_object_set_new(o, "names", json_string(row->names)) : 0;
     bad |= row->automatic ? json_object_set_new(o, "automatic", json_string(row->automatic)) : 0;
     bad |= row->group == PARAM_SOLID ? json_object_set_new(o, "shapes", shapes(row)) : 0;
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));

@@ -13,6 +13,7 @@ import { createBenchRays } from './rays.js';
 import { createBenchScreen } from './screen.js';
 import { createBenchTheory } from './theory.js';
 
+const FIELD_GRID = { kind: 'bundle', rays: 25, pattern: 'square', field_columns: 3, field_rows: 3 };
 const bench = { rays: null, chosen: null, points: [], screen: null, fan: null, measuring: false, beam: '' };
 const listeners = new Set();
 let overlay = null;
@@ -149,6 +150,11 @@ function createBeams(lab) {
       button('Fan', () => addBeam({ kind: 'fan', rays: 9 }), { icon: 'plus', small: true }),
       button('Sheet', () => addBeam({ kind: 'sheet', rays: 9 }), { icon: 'plus', small: true }),
       button('White sheet', () => addBeam({ kind: 'sheet', rays: 3, white: 'on' }), { icon: 'plus', small: true }),
+      button('Field grid', () => addBeam(FIELD_GRID), {
+        icon: 'plus',
+        small: true,
+        title: 'Parallel beams from a grid of 3 x 3 field points',
+      }),
       button('Bundle', () => addBeam({ kind: 'bundle', rays: 60 }), { icon: 'plus', small: true }),
     ),
     list,

@@ -1,7 +1,7 @@
 /* The control of one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
  *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words, slider() -> the
- *   slider of the newest row}
+ *   slider of the newest row, layers(design) -> promise of the layers of a coating}
  *   single: the one input that a label belongs to, or null for a group; busy(): whether the control is being dragged;
  *   set(value, true): after a rejected value
  *   written(x): a number as text with 7 digits; '' for NaN */
@@ -314,6 +314,40 @@ function text(row, context) {
   };
 }
 
+/* A coating: none, a design by its name, or layers as text, which begin with those of the design. */
+function coating(row, context) {
+  const own = 'own layers';
+  const select = element(
+    'select',
+    { class: 'input select', ...attributes(context) },
+    ['none', ...row.designs, own].map((word) => element('option', { value: word, text: word })),
+  );
+  const box = text(row, { ...context, name: `${context.name}, layers`, names: [] });
+  let last = 'none';
+  const set = (value) => {
+    last = value || 'none';
+    const known = last === 'none' || row.designs.includes(last);
+    select.value = known ? last : own;
+    box.node.hidden = known;
+    box.set(known ? '' : last);
+  };
+  select.addEventListener('change', async () => {
+    if (select.value !== own) return context.send(select.value, gesture('choice'));
+    const layers = last === 'none' ? '' : await context.layers(last);
+    box.node.hidden = false;
+    box.set(layers);
+    box.single.focus();
+    return layers && context.send(layers, gesture('choice'));
+  });
+  return {
+    node: element('span', { class: 'param-coating' }, select, box.node),
+    inputs: [select, box.single],
+    single: select,
+    busy: () => false,
+    set,
+  };
+}
+
 export function controlOf(row, context) {
   const made = maker(row)(row, context);
   made.set(row.value);
@@ -323,6 +357,7 @@ export function controlOf(row, context) {
 function maker(row) {
   if (row.choices)
     return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
+  if (row.designs) return coating;
   if (row.type === 'color') return row.coefficient ? channels : colour;
   if (row.type === 'vector') return vector;
   if (row.automatic) return orAutomatic;

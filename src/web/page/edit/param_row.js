@@ -41,6 +41,13 @@ function withMedium(lab, object, medium) {
   return { ...set, [`${object}.coefficients`]: kept ? was : first };
 }
 
+let media = null; /* the promise of GET /api/media, once it is needed */
+
+async function layersOf(lab, design) {
+  media ??= lab.get('/api/media');
+  return (await media).coatings.find(({ name }) => name === design)?.layers ?? design;
+}
+
 const FORGET_MS = 8000;
 
 const labelOf = (name) => name.replaceAll('_', ' ');
@@ -83,13 +90,13 @@ export function createRow(first, lab, { onabout, long } = {}) {
   let settled = 0;
   let forget = 0;
 
-  const kind = first.name === 'points' ? 'mesh' : first.name; /* of the objects that it may name */
   const control = controlOf(first, {
     name: `${object} ${labelOf(first.name)}`,
     describedby: meaning.id,
     send,
     slider: () => known.slider,
-    names: (lab.scene?.objects || []).filter((each) => each.kind === kind).map((each) => each.name),
+    layers: (design) => layersOf(lab, design),
+    names: (lab.scene?.objects || []).filter((each) => each.kind === first.names).map((each) => each.name),
   });
   label.id = unique('label');
   if (control.single) label.htmlFor = control.single.id;
