@@ -18,7 +18,14 @@
 #include <stdio.h>
 
 /* EVEN_TERMS: coefficients of r^4, r^6, ... r^20; ODD_TERMS: of r, r^2, r^3, r^5, ... r^15. */
-enum { LENS_EVEN_TERMS = 9, LENS_ODD_TERMS = 9, LENS_SURFACES_MAX = 200, LENS_LIST_MAX = 24, LENS_NAME_MAX = 64 };
+enum {
+    LENS_EVEN_TERMS = 9,
+    LENS_ODD_TERMS = 9,
+    LENS_SURFACES_MAX = 200,
+    LENS_LIST_MAX = 24,
+    LENS_NAME_MAX = 64,
+    LENS_NOTE_MAX = 2048
+};
 
 typedef enum lens_medium_kind {
     LENS_AIR,       /* the surroundings */
@@ -102,9 +109,9 @@ typedef struct lens_prescription {
     size_t field_count;                        /* at least 1: the axis */
     lens_vignetting vignetting[LENS_LIST_MAX]; /* of the fields */
     lens_wavelength wavelength[LENS_LIST_MAX];
-    size_t wavelength_count; /* at least 1: 587.5618 nm */
-    size_t primary;          /* index of the primary wavelength */
-    char note[2048];         /* what of the file was not read, or was assumed; "" for nothing */
+    size_t wavelength_count;  /* at least 1: 587.5618 nm */
+    size_t primary;           /* index of the primary wavelength */
+    char note[LENS_NOTE_MAX]; /* what of the file was not read, or was assumed; "" for nothing */
     /* What a .zmx file holds that nothing here uses, for a writer of that format: lines "N TEXT", where N is the line
      * of their surface (lens_surface.line), 0 for the system, -1 after the surfaces. NULL: nothing. */
     char *kept;

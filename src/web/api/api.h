@@ -3,6 +3,7 @@
  * the diagnostic. */
 #pragma once
 
+#include "scene/lens/lens_prescription.h"
 #include "study/study.h"
 #include "web/session/session.h"
 
@@ -29,7 +30,7 @@ api_handler api_state, api_scene, api_find, api_set, api_reset, api_undo, api_re
     api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open, api_lesson_measure,
     api_lesson_thumbnail, api_thumbnail, api_study_new, api_fan, api_fan_csv, api_fan_drawing, api_realism,
     api_realism_csv, api_realism_curve, api_realism_curve_csv, api_video, api_video_stop, api_video_file, api_motion,
-    api_motion_stop, api_rescue;
+    api_motion_stop, api_rescue, api_lens, api_lens_csv;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -64,6 +65,11 @@ status command_line(const folder *files, const char *file, const scene *s, int t
  * be read. The caller releases both. */
 status command_settings(const folder *files, const char *file, const scene *s, int threads, char **path,
                         json_t **settings, bool *complete, diagnostic *why);
+
+/* The scene of a lens file (scene/lens/lens_prescription.h), which must be inside the folder root, or of its text if
+ * that is not NULL; note: what of the file was not read, "" for nothing. */
+status api_lens_file(const char *name, const char *text, const char *root, scene **out, char note[LENS_NOTE_MAX],
+                     diagnostic *why);
 
 /* --- reading a request --- */
 

@@ -312,13 +312,14 @@ status api_media(call *c)
 /* --- opening --- */
 
 /* Reads a scene; 404 for a valid name without a file. */
-static status read_scene(call *c, const char *name, scene **out)
+static status read_scene(call *c, const char *name, scene **out, char note[LENS_NOTE_MAX])
 {
     const folder *files = c->l->files;
     char *path = NULL;
     status code = folder_path(files, name, true, &path, &c->why);
     if (code == STATUS_OK)
-        code = scene_read_below(path, folder_real(files), out, &c->why);
+        code = lens_file_named(name) ? api_lens_file(path, NULL, folder_real(files), out, note, &c->why)
+                                     : scene_read_below(path, folder_real(files), out, &c->why);
     else if (code == STATUS_BAD_INPUT && folder_path(files, name, false, &path, NULL) == STATUS_OK)
         c->refused = 404;
     free(path);
@@ -327,22 +328,29 @@ static status read_scene(call *c, const char *name, scene **out)
 
 status api_open(call *c)
 {
-    const char *name = NULL, *link = NULL;
+    const char *name = NULL, *link = NULL, *lens = NULL, *text = NULL;
+    char note[LENS_NOTE_MAX] = "";
     bool fresh = false;
     scene *s = NULL;
     uint64_t generation = 0;
     if (!api_read_flag(c, "new", &fresh) || !api_read_text(c, "link", false, &link) ||
-        !api_read_text(c, "file", !fresh && !link, &name))
+        !api_read_text(c, "lens", false, &lens) || !api_read_text(c, "text", lens != NULL, &text) ||
+        !api_read_text(c, "file", !fresh && !link && !lens, &name))
         return STATUS_BAD_INPUT;
-    if (fresh + (name != NULL) + (link != NULL) > 1)
-        return api_refuse(c, 400, "'file', 'new' and 'link' cannot be combined", "give only one of them");
+    if (fresh + (name != NULL) + (link != NULL) + (lens != NULL) > 1)
+        return api_refuse(c, 400, "'file', 'new', 'link' and 'lens' cannot be combined", "give only one of them");
     if (link && !shared_is_link(link))
         return api_refuse(c, 400, "the link holds no scene", "give a link with #scene=CODE");
-    TRY(fresh ? new_scene(&s, &c->why) : link ? shared_read_link(link, &s, &c->why) : read_scene(c, name, &s));
+    TRY(fresh  ? new_scene(&s, &c->why)
+        : link ? shared_read_link(link, &s, &c->why)
+        : lens ? api_lens_file(lens, text, folder_real(c->l->files), &s, note, &c->why)
+               : read_scene(c, name, &s, note));
     lab_set_default_threads(c->l, s);
     const char *file = name && lab_is_scene_name(name) ? name : NULL; /* no saving into an image */
     status code = scene_document_open(c->l->scene_document, s, file, &generation, &c->why);
-    return api_changed(c, code, generation);
+    if (code != STATUS_OK || !note[0])
+        return api_changed(c, code, generation);
+    return api_reply_json(c, json_pack("{s:I, s:o}", "generation", (json_int_t)generation, "note", json_of_text(note)));
 }
 
 /* --- saving --- */

@@ -38,6 +38,8 @@ static const struct api_route {
     {"GET", "/api/realism.csv", api_realism_csv, NO_BODY},
     {"GET", "/api/realism/{curve}", api_realism_curve, NO_BODY},
     {"GET", "/api/realism/{curve}/points.csv", api_realism_curve_csv, NO_BODY},
+    {"GET", "/api/lens", api_lens, NO_BODY},
+    {"GET", "/api/lens.csv", api_lens_csv, NO_BODY},
     {"POST", "/api/video", api_video, OBJECT},
     {"POST", "/api/video/stop", api_video_stop, EMPTY},
     {"GET", "/api/video/file", api_video_file, NO_BODY},

@@ -1,15 +1,17 @@
 /* Lists the files of the folder that the laboratory can open: classified by extension; scenes, hand scripts and optical
- * data, all YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit
+ * data, all YAML, by their keys; tables of lenses and of optical data by the words of their header. Breadth-first, so that a large deep folder cannot hide the files above it when a limit
  * is reached. */
 #include "base/array.h"
 #include "base/json_build.h"
 #include "base/status.h"
 #include "base/text.h"
 #include "scene/file/document.h"
+#include "scene/lens/lens_prescription.h"
 #include "web/document/folder.h"
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -22,12 +24,14 @@ typedef enum file_use {
     USE_MODEL,
     USE_IMAGE,
     USE_DATA,
+    USE_LENS,
     USE_SCRIPT,
     USE_STUDY,
     USE_LESSON,
     USE_COUNT
 } file_use;
-static const char *const use_names[USE_COUNT] = {"scenes", "models", "images", "data", "scripts", "studies", "lessons"};
+static const char *const use_names[USE_COUNT] = {"scenes", "models",  "images",  "data",
+                                                 "lenses", "scripts", "studies", "lessons"};
 
 static const struct ending {
     const char *text;
@@ -37,7 +41,7 @@ static const struct ending {
     {".gltf", USE_MODEL},    {".glb", USE_MODEL}, {".xyz", USE_MODEL}, {".png", USE_IMAGE}, {".jpg", USE_IMAGE},
     {".jpeg", USE_IMAGE},    {".pfm", USE_IMAGE}, {".bmp", USE_IMAGE}, {".hdr", USE_IMAGE}, {".exr", USE_IMAGE},
     {".agf", USE_DATA},      {".csv", USE_DATA},  {".tsv", USE_DATA},  {".txt", USE_DATA},  {".study", USE_STUDY},
-    {".lesson", USE_LESSON},
+    {".lesson", USE_LESSON}, {".zmx", USE_LENS},  {".dat", USE_LENS},
 };
 
 /* Names relative to the folder, owned. */
@@ -155,6 +159,18 @@ static file_use use_by_keys(listing *l, const char *name, const char *path)
     return use;
 }
 
+/* A table of a lens has the columns radius and thickness (scene/lens/lens_prescription.h). */
+static file_use use_of_table(const char *path)
+{
+    char text[4096];
+    FILE *f = fopen(path, "re");
+    const size_t size = f ? fread(text, 1, sizeof text - 1, f) : 0;
+    if (f)
+        fclose(f);
+    text[size] = 0;
+    return strstr(text, "radius") && strstr(text, "thickness") ? USE_LENS : USE_DATA;
+}
+
 /* USE_COUNT: a file that is not listed. A link counts if it leads to a file inside the folder. */
 static file_use use_of(listing *l, const char *name)
 {
@@ -171,6 +187,8 @@ static file_use use_of(listing *l, const char *name)
         return USE_COUNT;
     if (use == USE_SCENE)
         use = stat(path, &about) == 0 && about.st_size <= DOCUMENT_MAX ? use_by_keys(l, name, path) : USE_COUNT;
+    else if (use == USE_DATA && lens_file_named(name))
+        use = use_of_table(path);
     free(path);
     return use;
 }

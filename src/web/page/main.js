@@ -22,6 +22,7 @@ const modules = [
   () => import('./edit/panel_edit.js'),
   () => import('./bench/panel_pixel.js'),
   () => import('./bench/panel_bench.js'),
+  () => import('./bench/panel_lens.js'),
   () => import('./view/panel_compare.js'),
   () => import('./edit/panel_slime.js'),
   () => import('./studies/panel_studies.js'),

@@ -17,18 +17,20 @@ export function createFiles(lab, choice) {
 
   return { open, fresh, save, saveAs, pickSky, pick, addFile, forObject };
 
-  /* kind: a key of /api/files; actions: buttons of the dialog in addition to Cancel */
+  /* kind: a key of /api/files, or several; actions: buttons of the dialog in addition to Cancel */
   async function pick(title, kind, nothing, actions = []) {
     try {
       const files = await lab.get('/api/files');
-      return await chooser(title, files[kind], files.folder, nothing, actions, kind === 'scenes');
+      const names = [kind].flat().flatMap((each) => files[each]);
+      const pictured = new Set([kind].flat().includes('scenes') ? files.scenes : []);
+      return await chooser(title, names, files.folder, nothing, actions, pictured);
     } catch (error) {
       lab.fail(error);
       return null;
     }
   }
 
-  function chooser(title, names, folder, nothing, actions, withThumbnails) {
+  function chooser(title, names, folder, nothing, actions, pictured) {
     const list = element('ul', { class: 'file-list' });
     const search = element('input', {
       type: 'search',
@@ -65,7 +67,7 @@ export function createFiles(lab, choice) {
                     'aria-current': name === lab.state?.file ? 'true' : null,
                     onclick: () => made.close(name),
                   },
-                  withThumbnails ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
+                  pictured.has(name) ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
                   ...named(name),
                 ),
               ),
@@ -109,10 +111,10 @@ export function createFiles(lab, choice) {
 
   async function opened(body) {
     try {
-      await lab.change('/api/open', body);
+      const { note } = await lab.change('/api/open', body);
       ours.delete(body.file);
       choice.choose('');
-      lab.say(body.file ? `${body.file} opened.` : 'New scene opened.');
+      lab.say(body.file ? `${body.file} opened.` : 'New scene opened.', note);
     } catch (error) {
       lab.fail(error);
     }
@@ -120,7 +122,7 @@ export function createFiles(lab, choice) {
 
   async function open() {
     if (!(await mayLeave())) return;
-    const file = await pick('Open a scene', 'scenes', 'The folder contains no scenes.');
+    const file = await pick('Open a scene or a lens file', ['scenes', 'lenses'], 'The folder contains no scenes.');
     if (file) await opened({ file });
   }
 

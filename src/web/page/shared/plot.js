@@ -1,15 +1,17 @@
 /* A line chart with intervals over one axis; series differ by colour, marker and dash.
  *
- * exports: plot({title, x, y, series, heading, mark, marks, spots, width, legends}) -> SVG element
- *   x: {label, log, values}       values: words of a categorical axis; points are then at 0, 1, 2 ..
- *   y: {label, log}
- *   series: [{name, points: [{x, y, low, high}], marked, joined}]      low and high NaN: no interval is known;
- *     marked or joined false: without markers or without the line
- *   width: of the drawing in its own units; legends false: none
+ * exports: plot({title, x, y, series, heading, mark, marks, spots, circles, width, height, legends}) -> SVG element
+ *   x: {label, log, values, ends}       values: words of a categorical axis; points are then at 0, 1, 2 ..
+ *   y: {label, log, ends}               ends: [from, to] of the axis, instead of those of the points
+ *   series: [{name, points: [{x, y, low, high}], shape, colour, dash, marked, joined}]      low and high NaN: no
+ *     interval is known; shape: 'dots', or 'bars' from 0 next to each other; colour and dash: numbers from 0, instead of
+ *     the place in the list; marked or joined false: without markers or without the line
+ *   width, height: of the drawing in its own units; legends false: none
  *   heading: title of the legend, the parameters in which the series differ
  *   mark: a value of y with a horizontal line, such as 1 for ratios
  *   marks: [{axis: 'x' or 'y', at, text, kind}] labelled lines; one beyond the axis is at its end, with an arrow
  *   spots: [{x, y, text}] points with a ring
+ *   circles: [{x, y, r, text}] with a radius of the x axis
  *
  * If curves have intervals at the same x, these curves are shifted sideways by a few units of the drawing, so that the
  * intervals do not hide each other. */
@@ -22,7 +24,10 @@ const FRAME = { left: 76, top: 34, right: 22, bottom: 48 };
 const WORDS = 30; /* height of slanted words below the axis */
 const LEGEND = 226;
 const NAME_MAX = 23; /* characters that fit into the legend's width */
-const TICKS = 6;
+const TICKS = 6; /* about the largest number of ticks */
+const APART_X = 40; /* distances of ticks in small drawings */
+const APART_Y = 26;
+const BARS = 0.8; /* part of a category that its bars fill */
 const COLOURS = 5;
 const SHIFT = 7; /* distance of a curve from the next */
 const SHIFTS = 28; /* about the largest distance of the last curve from the first */
@@ -44,17 +49,18 @@ const finite = (values) => values.filter((value) => Number.isFinite(value));
 function ruler({ log, from, to, a, b }) {
   const bend = log ? Math.log10 : (value) => value;
   const [low, high] = [bend(from), bend(to)];
-  return { log, from, to, at: (value) => round(a + ((bend(value) - low) / (high - low)) * (b - a)) };
+  const ticks = Math.max(2, Math.min(TICKS, b > a ? (b - a) / APART_X : (a - b) / APART_Y));
+  return { log, from, to, ticks, at: (value) => round(a + ((bend(value) - low) / (high - low)) * (b - a)) };
 }
 
-function niceStep(across) {
-  const power = 10 ** Math.floor(Math.log10(across / TICKS));
-  const times = across / TICKS / power;
+function niceStep(across, ticks) {
+  const power = 10 ** Math.floor(Math.log10(across / ticks));
+  const times = across / ticks / power;
   return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
 }
 
-function linearTicks(from, to) {
-  const step = niceStep(to - from);
+function linearTicks({ from, to, ticks }) {
+  const step = niceStep(to - from, ticks);
   const first = Math.ceil(from / step - 1e-9);
   const last = Math.floor(to / step + 1e-9);
   return Array.from({ length: last - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
@@ -85,7 +91,7 @@ function ends(values, log, wide) {
 
 /* On a logarithmic axis with few values, each value is a better tick than powers of ten. */
 function ticksOf(scale, values) {
-  if (!scale.log) return linearTicks(scale.from, scale.to);
+  if (!scale.log) return linearTicks(scale);
   const apart = values?.every((value, i) => i === 0 || Math.abs(scale.at(value) - scale.at(values[i - 1])) > 34);
   return values && values.length <= 12 && apart ? values : logTicks(scale.from, scale.to);
 }
@@ -123,7 +129,7 @@ function axes(area, x, y, across, up) {
           text(across.at(value), bottom + 16, 'middle', digits(value)),
         ]),
     svg('path', { class: 'plot-frame', d: `M${area.x} ${area.y}V${bottom}H${right}` }),
-    text(area.x + area.width / 2, HEIGHT - 8, 'middle', x.label, { class: 'plot-label' }),
+    text(area.x + area.width / 2, area.end - 8, 'middle', x.label, { class: 'plot-label' }),
     text(0, 0, 'middle', y.label, {
       class: 'plot-label',
       transform: `translate(15 ${area.y + area.height / 2}) rotate(-90)`,
@@ -131,7 +137,8 @@ function axes(area, x, y, across, up) {
   );
 }
 
-const styleOf = (index) => ({ class: `plot-series plot-colour-${(index % COLOURS) + 1}` });
+const styleOf = ({ colour }, index) => ({ class: `plot-series plot-colour-${((colour ?? index) % COLOURS) + 1}` });
+const dashOf = ({ dash }, index) => DASHES[(dash ?? index) % DASHES.length];
 
 const hasInterval = (point) => point.low < point.high;
 
@@ -157,9 +164,9 @@ function line(one, index, across, up, shift) {
   const at = points.map((point) => `${place(point)} ${up.at(point.y)}`);
   return svg(
     'g',
-    styleOf(index),
+    styleOf(one, index),
     at.length > 1 && one.joined !== false
-      ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length] })
+      ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': dashOf(one, index) })
       : null,
     points
       .filter((point) => hasInterval(point) && (!up.log || point.low > 0))
@@ -178,6 +185,49 @@ function line(one, index, across, up, shift) {
     ),
   );
 }
+
+const dots = (one, index, across, up) =>
+  svg(
+    'g',
+    styleOf(one, index),
+    svg('path', { class: 'plot-dots', d: one.points.map(({ x, y }) => `M${across.at(x)} ${up.at(y)}h0`).join('') }),
+  );
+
+function bars(one, index, count, across, up) {
+  const wide = round(((across.at(1) - across.at(0)) * BARS) / count);
+  const zero = up.at(0);
+  return svg(
+    'g',
+    styleOf(one, index),
+    finite(one.points.map((point) => point.y)).length
+      ? one.points.map(({ x, y }) =>
+          svg(
+            'path',
+            {
+              class: 'plot-bar',
+              d: `M${round(across.at(x) + (index - count / 2) * wide)} ${zero}V${up.at(y)}h${wide}V${zero}`,
+            },
+            svg('title', {}, `${one.name}: ${digits(y, 5)}`),
+          ),
+        )
+      : null,
+  );
+}
+
+function drawn(one, index, { series, across, up, shift }) {
+  if (one.shape === 'dots') return dots(one, index, across, up);
+  if (one.shape === 'bars') return bars(one, index, series.length, across, up);
+  return line(one, index, across, up, shift);
+}
+
+const rounds = (circles, across, up) =>
+  circles.map(({ x, y, r, text: words }) =>
+    svg(
+      'circle',
+      { class: 'plot-circle', cx: across.at(x), cy: up.at(y), r: round(across.at(r) - across.at(0)) },
+      svg('title', {}, words),
+    ),
+  );
 
 /* Texts of vertical lines are at the top, each lower than the last; texts of horizontal lines are at the right. */
 function lines(marks, area, across, up) {
@@ -215,8 +265,8 @@ function legend(series, heading, left) {
       const y = FRAME.top + 26 + index * 20;
       return svg(
         'g',
-        styleOf(index),
-        svg('path', { class: 'plot-line', d: `M${left} ${y}h34`, 'stroke-dasharray': DASHES[index % DASHES.length] }),
+        styleOf(one, index),
+        svg('path', { class: 'plot-line', d: `M${left} ${y}h34`, 'stroke-dasharray': dashOf(one, index) }),
         svg('path', {
           class: 'plot-marker',
           d: MARKERS[index % MARKERS.length],
@@ -230,35 +280,37 @@ function legend(series, heading, left) {
 }
 
 export function plot({ title, x, y, series, heading = '', mark, marks = [], spots = [], ...more }) {
-  const { width: outer = WIDTH, legends = true } = more;
+  const { width: outer = WIDTH, height: end = HEIGHT, legends = true, circles = [] } = more;
   const many = legends && series.length > 1;
   const width = outer - FRAME.left - FRAME.right - (many ? LEGEND : 0);
   const area = {
     x: FRAME.left,
     y: FRAME.top,
     width,
-    height: HEIGHT - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0),
+    height: end - FRAME.top - FRAME.bottom - (areSlanted(x.values, width) ? WORDS : 0),
+    end,
   };
   const points = series.flatMap((one) => one.points);
   const xs = points.map((point) => point.x);
   const ys = finite([...points.flatMap((point) => [point.y, point.low, point.high]), mark]).filter(
     (value) => !y.log || value > 0,
   );
-  const [left, right] = x.values ? [-0.5, x.values.length - 0.5] : ends(finite(xs), x.log, false);
-  const [low, high] = ends(ys, y.log, mark === undefined);
+  const [left, right] = x.values ? [-0.5, x.values.length - 0.5] : (x.ends ?? ends(finite(xs), x.log, false));
+  const [low, high] = y.ends ?? ends(ys, y.log, mark === undefined);
   const across = ruler({ log: x.log && !x.values, from: left, to: right, a: area.x, b: area.x + area.width });
   const up = ruler({ log: y.log, from: low, to: high, a: area.y + area.height, b: area.y });
   const shifts = shiftsOf(series);
   const name = unique('plot');
   return svg(
     'svg',
-    { class: 'plot', viewBox: `0 0 ${outer} ${HEIGHT}`, role: 'img', 'aria-labelledby': name },
+    { class: 'plot', viewBox: `0 0 ${outer} ${end}`, role: 'img', 'aria-labelledby': name },
     svg('title', { id: name }, title),
     text(area.x, 17, 'start', title, { class: 'plot-title', 'aria-hidden': 'true' }),
     axes(area, { ...x, points: xs }, y, across, up),
     mark === undefined ? null : svg('path', { class: 'plot-mark', d: `M${area.x} ${up.at(mark)}h${area.width}` }),
     lines(marks, area, across, up),
-    series.map((one, index) => line(one, index, across, up, shifts[index])),
+    series.map((one, index) => drawn(one, index, { series, across, up, shift: shifts[index] })),
+    rounds(circles, across, up),
     rings(spots, across, up),
     many ? legend(series, heading, area.x + area.width + 24) : null,
   );

@@ -5,7 +5,10 @@
  *   namesScene()        whether the page or its address has a scene, or the address names a file (engine_boot.js)
  *   openLink(lab)       opens that scene, and the scene of each later fragment of the address; after a reload only if
  *                       the engine does not have it any more
- *   acceptDrops(lab)    opens a file that is dropped on the page
+ *   acceptDrops(lab)    opens a file that is dropped on the page: one with a scene, or a lens file
+ *   openLens(lab, name, text)   opens the scene of a lens file
+ *   LENS_FILES          endings of lens files
+ *   openFile(lab, file)
  *   share(lab)          the dialog: copies a link, saves a file with the scene, and opens such a file */
 
 import { name, named, returned } from './address.js';
@@ -62,9 +65,32 @@ async function copyLink(lab) {
 
 const BEGIN = '<script type="text/plain" id="cuvette-scene">';
 const KEYWORD = 'Cuvette scene';
+const LARGEST_LENS = 500000; // bytes, so that a request can hold it
 const LARGEST = 1 << 28; // bytes, as for files of the laboratory's folder
 
-async function openFile(lab, file) {
+export const LENS_FILES = '.zmx,.dat,.csv';
+
+export async function openLens(lab, name, text) {
+  try {
+    const { note } = await lab.change('/api/open', { lens: name, text });
+    lab.say(`The scene of ${name} is shown; Undo restores the previous one.`, note);
+  } catch (error) {
+    lab.fail(error);
+  }
+}
+
+/* Zemax writes UTF-16 with its mark. */
+function textOf(bytes) {
+  const mark = bytes[0] * 256 + bytes[1];
+  return new TextDecoder(mark === 0xfffe ? 'utf-16le' : mark === 0xfeff ? 'utf-16be' : 'utf-8').decode(bytes);
+}
+
+export async function openFile(lab, file) {
+  if (LENS_FILES.split(',').some((ending) => file.name.toLowerCase().endsWith(ending))) {
+    if (file.size < LARGEST_LENS) await openLens(lab, file.name, textOf(new Uint8Array(await file.arrayBuffer())));
+    else lab.fail({ message: `${file.name} is too large`, remedy: 'choose a lens file below 500 kB' });
+    return;
+  }
   const code = file.size <= LARGEST ? codeOf(new Uint8Array(await file.arrayBuffer())) : null;
   if (code) await openText(lab, `#scene=${code}`);
   else
