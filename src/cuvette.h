@@ -664,6 +664,26 @@ CUVETTE_API cuvette_status cuvette_fan_focus(const cuvette_fan *fan, cuvette_foc
 /* Writes what `cuvette fan` writes: .svg, a drawing, or .csv, one row per ray. */
 CUVETTE_API cuvette_status cuvette_fan_write(const cuvette_fan *fan, const char *path, cuvette_diagnostic *why);
 
+/* --- sections ---
+ *
+ * A plane cut through the scene: what is in it, by the rule of priorities. */
+
+typedef enum cuvette_section_view { CUVETTE_FRONT, CUVETTE_TOP, CUVETTE_SIDE } cuvette_section_view;
+
+/* Zero-initialise it and set size; later versions add fields at the end. */
+typedef struct cuvette_section_rule {
+    size_t size;         /* sizeof(cuvette_section_rule) */
+    int32_t view;        /* cuvette_section_view: x to the right and y up; x and z; z and y */
+    int32_t cells;       /* of the grid along the longer side, 2..4096; 0: 400 */
+    const char *through; /* the plane contains the axis of this solid; NULL: view */
+    const double *at;    /* a point of the plane, three numbers; NULL: the first beam's start */
+    double extent[4];    /* u0, u1, v0, v1, scene units; all 0: the solids that the plane cuts, and the beams */
+} cuvette_section_rule;
+
+/* Writes what `cuvette section` writes: .svg, a drawing with the beams' rays, or .json, the outlines of the solids. */
+CUVETTE_API cuvette_status cuvette_query_write_section(const cuvette_query *query, const cuvette_section_rule *rule,
+                                                       const char *path, cuvette_diagnostic *why);
+
 /* --- optics against theory --- */
 
 /* A quantity measured with traced rays, and a textbook's closed form. The texts are valid during the call of visit. */

@@ -20,6 +20,7 @@ status command_animate(int argc, char **argv, diagnostic *why);
 status command_scene(int argc, char **argv, diagnostic *why);
 status command_trace(int argc, char **argv, diagnostic *why);
 status command_fan(int argc, char **argv, diagnostic *why);
+status command_section(int argc, char **argv, diagnostic *why);
 status command_params(int argc, char **argv, diagnostic *why);
 status command_media(int argc, char **argv, diagnostic *why);
 status command_lens(int argc, char **argv, diagnostic *why);

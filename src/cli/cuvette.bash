@@ -77,6 +77,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|csv|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
+        section) _cuvette_files 'svg|json' ;;
         lens) _cuvette_files 'yaml|yml|zmx|dat|csv' ;;
         scene | fit) _cuvette_files 'yaml|yml' ;;
         mesh) _cuvette_files 'obj|ply|glb' ;;
@@ -153,7 +154,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify summary compare films power exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media lens mesh study fit compare realism motion lesson lab machine help --help --usage --version
+        _cuvette_words render animate scene trace fan section params media lens mesh study fit compare realism motion lesson lab machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -189,6 +190,13 @@ _cuvette()
     fan)
         if [[ $current == -* ]]; then
             _cuvette_words --from --to --rays --width --spread --plane --depth --lambda --set --tree --output --memory-limit --help --usage --version
+        else
+            _cuvette_files 'yaml|yml'
+        fi
+        ;;
+    section)
+        if [[ $current == -* ]]; then
+            _cuvette_words --view --at --through --extent --cells --lambda --set --output --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi
@@ -277,7 +285,7 @@ _cuvette()
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media lens mesh study fit compare realism motion lesson lab machine
+            _cuvette_words render animate scene trace fan section params media lens mesh study fit compare realism motion lesson lab machine
         fi
         ;;
     esac

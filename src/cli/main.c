@@ -19,6 +19,7 @@ static const command commands[] = {
     {"scene", "check, edit and write a scene, or build a new one", command_scene},
     {"trace", "trace one ray and print its ray tree", command_trace},
     {"fan", "trace a fan of rays and find its focus and caustic", command_fan},
+    {"section", "cut a plane through a scene and write its outlines", command_section},
     {"params", "list all parameters, or those of a scene", command_params},
     {"media", "print the media catalogue: refractive index, dispersion, source", command_media},
     {"lens", "read a lens prescription; write it as a scene or a lens file", command_lens},

@@ -1,4 +1,4 @@
-/* Fans of rays, traced by the query's probe. */
+/* Fans of rays, traced by the query's probe; and sections. */
 #include "render/inspect/fan.h"
 #include "engine/engine_private.h"
 #include "report/trace_writers.h"
@@ -175,6 +175,59 @@ cuvette_status cuvette_fan_write(const cuvette_fan *f, const char *path, cuvette
         return engine_report(code, &inner, why);
     const fan_output content = content_of(f);
     code = query_write_file(writers, sizeof writers / sizeof *writers, "use .svg or .csv", &content, path, &inner);
+    query_end_trace(q);
+    return engine_report(code, &inner, why);
+}
+
+/* --- sections --- */
+
+static status write_section_drawing(const void *content, FILE *out, diagnostic *why)
+{
+    return section_write_drawing(content, out, why);
+}
+
+static status write_section_json(const void *content, FILE *out, diagnostic *why)
+{
+    return section_write_json(content, out, why);
+}
+
+static status read_section_rule(const cuvette_section_rule *given, section_rule *out, diagnostic *why)
+{
+    const double *e = given->extent;
+    if (given->size < sizeof *given) /* there is no earlier version yet */
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_section_rule)",
+                        "the size of the section's rule is %zu, which is too small", given->size);
+    if (given->view < 0 || given->view >= SECTION_VIEW_COUNT)
+        return diagnose(why, STATUS_BAD_INPUT, "use a value of cuvette_section_view", "there is no view number %d",
+                        (int)given->view);
+    if (given->at && !engine_is_finite(given->at))
+        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the section's point is not finite");
+    *out = (section_rule){.view = (section_view)given->view,
+                          .through = given->through,
+                          .has_at = given->at,
+                          .has_extent = e[0] != 0 || e[1] != 0 || e[2] != 0 || e[3] != 0,
+                          .extent = {e[0], e[1], e[2], e[3]},
+                          .cells = given->cells ? given->cells : SECTION_CELLS_USUAL};
+    if (given->at)
+        out->at = engine_vector(given->at);
+    return STATUS_OK;
+}
+
+cuvette_status cuvette_query_write_section(const cuvette_query *query, const cuvette_section_rule *rule,
+                                           const char *path, cuvette_diagnostic *why)
+{
+    static const ray_writer forms[] = {{".svg", write_section_drawing}, {".json", write_section_json}};
+    ENGINE_ENTER();
+    ENGINE_NEED(query, rule, path);
+    section_rule read;
+    cuvette_query *q = NULL;
+    status code = read_section_rule(rule, &read, &inner);
+    THEN(code, query_begin_trace(query, &q, &inner));
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    section_output t = {.s = q->model, .p = q->inspector, .level = q->level, .scene_path = "", .cells = read.cells};
+    code = section_rule_resolve(&read, q->model, &t.plane, &inner);
+    THEN(code, query_write_file(forms, sizeof forms / sizeof *forms, "use .svg or .json", &t, path, &inner));
     query_end_trace(q);
     return engine_report(code, &inner, why);
 }

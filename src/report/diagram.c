@@ -67,8 +67,7 @@ static double y_of(const diagram *d, double v)
 
 /* --- media --- */
 
-/* Refractive index at render.lambda_nm; 1 if it is unknown. */
-static double index_of(const scene *s, int i)
+double diagram_index(const scene *s, int i)
 {
     index_law law;
     if (material_index_law(&s->solids[i].surface, s->solids[i].name, &law, NULL) != STATUS_OK)
@@ -93,7 +92,7 @@ static void write_fill(FILE *out, const scene *s, int i)
         fprintf(out, "fill=\"#%02x%02x%02x\"", (unsigned)byte[0], (unsigned)byte[1], (unsigned)byte[2]);
         return;
     }
-    const double power = fabs(index_of(s, i) - 1.0);
+    const double power = fabs(diagram_index(s, i) - 1.0);
     fprintf(out, "fill=\"#56b4e9\" fill-opacity=\"%.3f\"", power < 0.8 ? 0.06 + 0.5 * power : 0.46);
 }
 
@@ -113,8 +112,7 @@ static status write_area(const diagram *d, int solid_index, section_step *steps,
         for (size_t k = steps[i].starts_ring ? 0 : 1; k < line->count; k++) {
             const size_t index = line->first + (steps[i].backwards ? line->count - 1 - k : k);
             const section_point at = cut->point[index];
-            if (d->needed[index])
-                fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
+            fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
         }
     }
     fputs("Z\"/>\n", d->out);
@@ -126,51 +124,17 @@ static void write_boundary(const diagram *d, const section_line *line)
     fputs("<path d=\"", d->out);
     for (size_t k = 0; k < line->count; k++) {
         const section_point at = d->cut.point[line->first + k];
-        if (d->needed[line->first + k])
-            fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
+        fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", x_of(d, at.u), y_of(d, at.v));
     }
     fputs("\"/>\n", d->out);
-}
-
-/* Squared distance of p from the segment ab, in scene units squared. */
-static double distance2(section_point p, section_point a, section_point b)
-{
-    const double du = b.u - a.u, dv = b.v - a.v, length2 = du * du + dv * dv;
-    const double fraction = length2 > 0.0 ? ((p.u - a.u) * du + (p.v - a.v) * dv) / length2 : 0.0;
-    const double within = fraction < 0.0 ? 0.0 : fraction > 1.0 ? 1.0 : fraction;
-    const double off_u = p.u - a.u - within * du, off_v = p.v - a.v - within * dv;
-    return off_u * off_u + off_v * off_v;
-}
-
-/* Marks the points that the line needs within the tolerance (Douglas and Peucker 1973). */
-static void mark_needed(diagram *d, size_t first, size_t last)
-{
-    const double tolerance = 0.03 / d->scale; /* pixels */
-    size_t farthest = first;
-    double most = tolerance * tolerance;
-    d->needed[first] = d->needed[last] = true;
-    for (size_t k = first + 1; k < last; k++) {
-        const double off = distance2(d->cut.point[k], d->cut.point[first], d->cut.point[last]);
-        if (off > most)
-            most = off, farthest = k;
-    }
-    if (farthest == first)
-        return;
-    mark_needed(d, first, farthest);
-    mark_needed(d, farthest, last);
 }
 
 /* Fills the areas of the media and draws the boundaries between them. */
 static status draw_media(diagram *d, diagnostic *why)
 {
     section_step *steps = calloc(d->cut.line_count + 1, sizeof *steps);
-    d->needed = calloc(d->cut.point_count + 1, sizeof *d->needed);
-    for (size_t i = 0; i < d->cut.line_count && d->needed; i++)
-        mark_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
-    if (!steps || !d->needed) {
-        free(steps);
+    if (!steps)
         return out_of_memory(why);
-    }
     status code = STATUS_OK;
     fputs("<g>\n", d->out);
     for (int i = 0; i < (int)d->s->solid_count && code == STATUS_OK; i++)
@@ -258,6 +222,7 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
     fit(d, box);
     const double longer = frame->width > frame->height ? frame->width : frame->height;
     TRY(section_cut(p, &d->plane, (int)(longer / 1.5), &d->cut, why));
+    TRY(section_simplify(&d->cut, 0.03 / d->scale, why)); /* pixels */
     TRY(draw_media(d, why));
     draw_axes(d, caption);
     return STATUS_OK;
@@ -266,7 +231,6 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
 void diagram_end(diagram *d)
 {
     section_release(&d->cut);
-    free(d->needed);
 }
 
 /* --- rays and marks --- */
@@ -364,9 +328,9 @@ static void media_key_text(const probe *p, const scene *s, int i, char *text, si
     if (is_opaque(s, i))
         snprintf(text, size, "%s", name);
     else if (strcmp(substance, name) == 0)
-        snprintf(text, size, "%s, n = %.6g", name, index_of(s, i));
+        snprintf(text, size, "%s, n = %.6g", name, diagram_index(s, i));
     else
-        snprintf(text, size, "%s (%s), n = %.6g", name, substance, index_of(s, i));
+        snprintf(text, size, "%s (%s), n = %.6g", name, substance, diagram_index(s, i));
 }
 
 double diagram_media_key(FILE *out, const probe *p, const scene *s, double left, double right, double y)

@@ -35,7 +35,6 @@ typedef struct diagram {
     const scene *s;
     section_plane plane; /* its extent is the window */
     section cut;
-    bool *needed; /* per point of the section: needed at this scale */
     diagram_frame frame;
     double scale; /* pixels per scene unit */
 } diagram;
@@ -67,6 +66,9 @@ double diagram_weight(const ray_node *node);
  * only measures. */
 double diagram_media_key(FILE *out, const probe *p, const scene *s, double left, double right, double y);
 enum { DIAGRAM_ROW = 20 };
+
+/* The refractive index of a solid at render.lambda_nm; 1 if it is unknown. */
+double diagram_index(const scene *s, int solid);
 
 /* Margins around a frame for its caption, tick labels and axis names, in CSS pixels. */
 enum { DIAGRAM_ABOVE = 24, DIAGRAM_BELOW = 42, DIAGRAM_BEFORE = 54, DIAGRAM_BEHIND = 14 };

@@ -1,11 +1,12 @@
-/* Writers of a ray tree, as text, JSON, CSV and a drawing; of the ray trees of a scene's beams; and of the light that beams
- * cast on a screen. cuvette-trace(1) documents the formats. Errors of the stream stay in the stream, where the caller
- * checks them. Ownership: everything is borrowed. */
+/* Writers of a ray tree, as text, JSON, CSV and a drawing; of the ray trees of a scene's beams; of the light that beams
+ * cast on a screen; and of a section of the solids. cuvette-trace(1) documents the formats. Errors of the stream stay in
+ * the stream, where the caller checks them. Ownership: everything is borrowed. */
 #pragma once
 
 #include "render/inspect/beams.h"
 #include "render/inspect/fan.h"
 #include "render/inspect/probe.h"
+#include "render/inspect/section.h"
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -71,3 +72,36 @@ status fan_write_csv(const fan_output *t, FILE *out, diagnostic *why);
 status fan_write_drawing(const fan_output *t, FILE *out, diagnostic *why);
 /* In the format of GET /api/fan (src/web/README.md); NULL when out of memory. */
 json_t *fan_json(const fan_output *t);
+
+/* A section of a scene, for `cuvette section` and the laboratory: a plane, and the part of it that is shown. Zero it
+ * first. */
+typedef enum section_view { SECTION_FRONT, SECTION_TOP, SECTION_SIDE, SECTION_VIEW_COUNT } section_view;
+extern const char *const section_view_words[SECTION_VIEW_COUNT];
+
+enum { SECTION_CELLS_USUAL = 400 };
+
+typedef struct section_rule {
+    section_view view; /* x to the right and y up; x and z; z and y */
+    const char
+        *through; /* the plane contains the axis (y) of this solid, drawn along the page if it lies; NULL: view */
+    bool has_at, has_extent;
+    vec3 at;          /* a point of the plane; default: the first visible beam's start, or a solid's centre */
+    double extent[4]; /* u0, u1, v0, v1 in the plane's coordinates; default: what the plane cuts, and the beams */
+    int cells;        /* as for section_cut */
+} section_rule;
+
+typedef struct section_output {
+    const scene *s;
+    const probe *p;
+    isa level;
+    const char *scene_path;
+    section_plane plane;
+    int cells;
+} section_output;
+
+/* Finds the plane and its extent. STATUS_BAD_INPUT: there is no such solid, or the extent or the cells are out of
+ * range. */
+status section_rule_resolve(const section_rule *rule, const scene *s, section_plane *out, diagnostic *why);
+/* cuvette-section(1) documents the JSON. The drawing also has the rays of the beams. */
+status section_write_json(const section_output *t, FILE *out, diagnostic *why);
+status section_write_drawing(const section_output *t, FILE *out, diagnostic *why);

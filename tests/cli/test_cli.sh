@@ -60,10 +60,10 @@ check "--version names the version and the build" matches "$(<out)" \
     '^cuvette [0-9]+\.[0-9]+\.[0-9]+ \(build [0-9a-f]{16}(, commit [0-9a-f]+\+?)?\)$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine help; do
+for command in render animate scene trace fan section params media mesh study fit compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
-for command in render animate scene trace fan params media mesh study fit compare realism motion lab machine \
+for command in render animate scene trace fan section params media mesh study fit compare realism motion lab machine \
     "study run" "study new" "study list" "study status" "study merge" "study verify" \
     "study summary" "study exclude" "study compare" "study power" "study plot" "study submit"; do
     # shellcheck disable=SC2086
@@ -773,6 +773,15 @@ check "a tree into a closed pipe exits with 1 and no message" is "$code $(<err)"
 run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
 check "fan prints the note on a spectral scene" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
+run section "$scene" --view top --at 0,1,0 --cells 60 -o section.json
+check "section writes JSON" silent_success
+check "section writes JSON: areas" matches "$(<section.json)" '"areas":\[\{"solid":.*"rings":\[\[\['
+run section "$scene" -o section.svg
+check "section draws an SVG" silent_success
+run section "$scene" --through nothing -o section.svg
+check "section names a solid" matches "$(<err)" "there is no solid 'nothing'"
+run section "$scene" --extent 1,0,0,1 -o section.svg
+check "section needs an extent" matches "$(<err)" 'extent is empty'
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "fan draws an SVG" silent_success
 check "fan prints the focus" matches "$(<out)" \
@@ -1263,6 +1272,7 @@ check "completion offers every option" is "$offered" ""
 check "completion offers media" is "$(complete_line "$program" media fused)" fused-silica
 check "completion offers options of trace" is "$(complete_line cuvette trace --p)" --pixel
 check "completion offers options of fan" is "$(complete_line cuvette fan --sp)" --spread
+check "completion offers options of section" is "$(complete_line cuvette section --ex)" --extent
 check "completion offers objects of the scene" is \
     "$(
         complete_line "$program" scene "$scene" --delete ve

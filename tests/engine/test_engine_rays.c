@@ -1,6 +1,7 @@
 /* Tests of ray trees, fans, optics, comparisons and layers through cuvette.h: they equal the film, closed forms and
  * what the library's own functions give; wrong arguments are refused. test_probe.c and test_fan.c test the tracing
  * itself. */
+#include <jansson.h>
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -199,6 +200,46 @@ static void test_focus_of_a_ball(void **state)
     assert_true(rays == 11 && nodes == 33 && crossings == 10);
     assert_string_equal(cuvette_fan_rays(f, NULL)[3].end_name, "sky");
     cuvette_fan_destroy(f);
+}
+
+/* The section of a ball next to its centre: a circle about the origin of the plane. */
+static void test_section(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "solids: {ball: {shape: sphere, position: [0, 0, 0], radius: 1, transparency: 1, ior: 1.5}}";
+    const double at[] = {0, 0, 0.6}, nan_at[] = {0, NAN, 0};
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    fine(cuvette_scene_read_text("ball.yaml", text, strlen(text), &s, &why), &why);
+    cuvette_query *q = query_of(s);
+    cuvette_section_rule rule = {.size = sizeof rule, .at = at, .cells = 50};
+    fine(cuvette_query_write_section(q, &rule, "ball.json", &why), &why);
+    json_t *o = json_load_file("ball.json", 0, NULL), *areas = json_object_get(o, "areas");
+    assert_int_equal(json_array_size(areas), 1);
+    const json_t *ring = json_array_get(json_object_get(json_array_get(areas, 0), "rings"), 0);
+    assert_true(json_array_size(ring) > 30);
+    for (size_t i = 0; i < json_array_size(ring); i++) {
+        const json_t *point = json_array_get(ring, i);
+        const double u = json_number_value(json_array_get(point, 0)), v = json_number_value(json_array_get(point, 1));
+        assert_true(fabs(hypot(u, v) - 0.8) < 1e-9);
+    }
+    json_decref(o);
+    fine(cuvette_query_write_section(q, &(cuvette_section_rule){.size = sizeof rule, .through = "ball"}, "ball.svg",
+                                     &why),
+         &why);
+    const cuvette_section_rule bad[] = {{.size = 1},
+                                        {.size = sizeof rule, .view = 3},
+                                        {.size = sizeof rule, .at = nan_at},
+                                        {.size = sizeof rule, .through = "none"},
+                                        {.size = sizeof rule, .cells = 1},
+                                        {.size = sizeof rule, .extent = {1, 0, 0, 1}}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(cuvette_query_write_section(q, &bad[i], "bad.json", &why), CUVETTE_BAD_INPUT);
+    assert_int_equal(cuvette_query_write_section(q, &rule, "ball.txt", &why), CUVETTE_BAD_INPUT);
+    remove("ball.json");
+    remove("ball.svg");
+    cuvette_query_destroy(q);
 }
 
 static void test_wrong_rays_and_fans(void **state)
@@ -403,6 +444,7 @@ int main(void)
         cmocka_unit_test(test_one_wavelength),
         cmocka_unit_test(test_beams),
         cmocka_unit_test(test_focus_of_a_ball),
+        cmocka_unit_test(test_section),
         cmocka_unit_test(test_wrong_rays_and_fans),
         cmocka_unit_test(test_optics),
         cmocka_unit_test(test_comparison),

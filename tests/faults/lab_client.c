@@ -141,6 +141,7 @@ static const request usual[] = {
     {"GET", "/api/image.jpg?wait=1", "", false},
     {"GET", "/api/trace?x=4&y=3", "", true},
     {"GET", "/api/fan?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"GET", "/api/section?view=front&cells=40", "", true},
     {"GET", "/api/notes", "", true},
     {"GET", "/api/compare?wait=1", "", false},
     {"GET", "/api/files", "", true},
@@ -192,6 +193,7 @@ static const request edits[] = {
 static const request drawings[] = {
     {"GET", "/api/trace.svg?x=4&y=3", "", true},
     {"GET", "/api/fan.svg?from=-3,1.5,0&to=3,1.5,0&width=1.5&rays=5", "", true},
+    {"GET", "/api/section.svg?view=top", "", true},
     {"GET", "/api/thumbnail.jpg?file=rod.yaml", "", false},
 };
 

@@ -9,7 +9,8 @@
     X(render)   \
     X(animate)  \
     X(scene)    \
-    X(trace) X(fan) X(params) X(media) X(mesh) X(study) X(compare) X(realism) X(motion) X(lesson) X(lab) X(machine)
+    X(trace)    \
+    X(fan) X(section) X(params) X(media) X(mesh) X(study) X(compare) X(realism) X(motion) X(lesson) X(lab) X(machine)
 #define ROW(name) {#name, "fuzzed", command_##name},
 static const command commands[] = {EACH(ROW)};
 

@@ -414,3 +414,51 @@ status section_cut(const probe *p, const section_plane *plane, int cells, sectio
     free(c.pieces);
     return c.failed ? cancelled_or_out_of_memory(why) : STATUS_OK;
 }
+
+/* Squared distance of p from the segment ab, in scene units squared. */
+static double distance2(section_point p, section_point a, section_point b)
+{
+    const double du = b.u - a.u, dv = b.v - a.v, length2 = du * du + dv * dv;
+    const double fraction = length2 > 0.0 ? ((p.u - a.u) * du + (p.v - a.v) * dv) / length2 : 0.0;
+    const double within = fraction < 0.0 ? 0.0 : fraction > 1.0 ? 1.0 : fraction;
+    const double off_u = p.u - a.u - within * du, off_v = p.v - a.v - within * dv;
+    return off_u * off_u + off_v * off_v;
+}
+
+/* Marks the points between first and last that the line needs. */
+static void mark_needed(const section *s, double tolerance, size_t first, size_t last, bool *needed)
+{
+    size_t farthest = first;
+    double most = tolerance * tolerance;
+    needed[first] = needed[last] = true;
+    for (size_t k = first + 1; k < last; k++) {
+        const double off = distance2(s->point[k], s->point[first], s->point[last]);
+        if (off > most)
+            most = off, farthest = k;
+    }
+    if (farthest == first)
+        return;
+    mark_needed(s, tolerance, first, farthest, needed);
+    mark_needed(s, tolerance, farthest, last, needed);
+}
+
+status section_simplify(section *s, double tolerance, diagnostic *why)
+{
+    bool *needed = calloc(s->point_count + 1, sizeof *needed);
+    if (!needed)
+        return out_of_memory(why);
+    size_t kept = 0;
+    for (size_t i = 0; i < s->line_count; i++) {
+        section_line *line = &s->line[i];
+        const size_t first = line->first, end = first + line->count;
+        mark_needed(s, tolerance, first, end - 1, needed);
+        line->first = kept;
+        for (size_t k = first; k < end; k++)
+            if (needed[k])
+                s->point[kept++] = s->point[k];
+        line->count = kept - line->first;
+    }
+    s->point_count = kept;
+    free(needed);
+    return STATUS_OK;
+}

@@ -53,6 +53,9 @@ typedef struct section_step {
  * steps, and their number to *count. */
 status section_area(const section *s, int medium, section_step *out, size_t *count, diagnostic *why);
 
+/* Drops the points that the lines do not need within the tolerance, in scene units (Douglas and Peucker 1973). */
+status section_simplify(section *s, double tolerance, diagnostic *why);
+
 /* section_project: the orthogonal projection of a point onto the plane's coordinates; section_place: the inverse. */
 section_point section_project(const section_plane *plane, vec3 p);
 vec3 section_place(const section_plane *plane, double u, double v);

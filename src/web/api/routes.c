@@ -34,6 +34,8 @@ static const struct api_route {
     {"GET", "/api/fan", api_fan, NO_BODY},
     {"GET", "/api/fan.csv", api_fan_csv, NO_BODY},
     {"GET", "/api/fan.svg", api_fan_drawing, NO_BODY},
+    {"GET", "/api/section", api_section, NO_BODY},
+    {"GET", "/api/section.svg", api_section_drawing, NO_BODY},
     {"GET", "/api/realism", api_realism, NO_BODY},
     {"GET", "/api/realism.csv", api_realism_csv, NO_BODY},
     {"GET", "/api/realism/{curve}", api_realism_curve, NO_BODY},

@@ -7,6 +7,7 @@ const list = [
   ['Ctrl S', 'save the scene'],
   ['?', 'show this list'],
   ['T, P', 'large text, projector mode'],
+  ['2', 'the bench in two dimensions: a section through the scene, and back to the image'],
   ['Arrow keys', 'on the image: orbit by 5°, with Shift by 1°'],
   ['W S, A D, Q E', 'on the image: step forward and back, left and right, down and up; with Shift a tenth of a step'],
   ['Page Up, Page Down', 'on the image: nearer to or farther from the pivot, which stays; with Shift a little'],
@@ -32,6 +33,11 @@ const list = [
     'Arrow keys with Inspect',
     'on the image: move the selected pixel by one, with Shift by ten; Escape clears the selection',
   ],
+  [
+    'Tab, arrow keys, R',
+    'in the section: from object to object; a step of the grid, with Shift a tenth; turn by 5°, with Shift back',
+  ],
+  ['A, G, N, 0, Escape', 'in the section: angles, grid, snap, show all; cancel a drag, clear the selection, close'],
   ['F', 'while held: show the reference image A'],
   ['Home on the splitter', 'reset the width of the panels; arrow keys change it'],
 ];
@@ -78,6 +84,7 @@ export function createKeys(lab) {
     else if (control && letter === 'z') lab.undo(event.shiftKey);
     else if (control && letter === 'y') lab.undo(true);
     else if (event.key === '?' && !control) showHelp();
+    else if (event.key === '2' && !control && !event.altKey && lab.section) lab.section.toggle();
     else if (DISPLAY[letter] && !control && !event.altKey) lab.display.toggle(DISPLAY[letter]);
     else return;
     event.preventDefault();

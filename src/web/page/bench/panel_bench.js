@@ -11,6 +11,7 @@ import { createBenchOverlay } from './overlay.js';
 import { describe, isCut } from './ray_tree.js';
 import { createBenchRays } from './rays.js';
 import { createBenchScreen } from './screen.js';
+import { createSection } from './section.js';
 import { createBenchTheory } from './theory.js';
 
 const FIELD_GRID = { kind: 'bundle', rays: 25, pattern: 'square', field_columns: 3, field_rows: 3 };
@@ -41,6 +42,7 @@ function start(lab) {
   });
   lab.on('view', () => overlay.draw());
   lab.on('state', () => overlay.draw());
+  createSection(lab);
   lab.view.tool('bench', {
     label: 'Bench',
     icon: 'beam',

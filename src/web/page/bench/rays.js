@@ -1,6 +1,7 @@
 /* The rays of the scene's beams, in world space: requested again when the scene changes, not when the camera moves.
  *
- * exports: createBenchRays(lab) -> {segments, error, on(f)}
+ * exports: segmentsOf(beam) -> the segments of a beam of /api/beams
+ *          createBenchRays(lab) -> {segments, error, on(f)}
  *   segments: [{beam, ray: {number, lambda_nm, power, displayed}, tree, one, line, power, css}] in the order of the
  *   reply; one: a ray of ray_tree.js, and its line; power: at its start */
 
@@ -45,7 +46,7 @@ export function createBenchRays(lab) {
   }
 }
 
-function segmentsOf({ name, rays }) {
+export function segmentsOf({ name, rays }) {
   return rays.flatMap((ray) => {
     const tree = buildTree({ root: ray.root });
     const css = `rgb(${ray.displayed.join(' ')})`;

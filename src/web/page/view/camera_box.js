@@ -197,15 +197,40 @@ export function cameraBox(root, lab) {
 
 const titleOf = ({ title, keys }) => `${title} (${keys.replace(/\b[a-z]$/, (x) => x.toUpperCase())})`;
 
+/* The height of the image at the pivot stays. */
+function setProjection(lab, parallel) {
+  const { camera, view } = lab.state;
+  const height = 2 * camera.half_height * view.distance;
+  lab
+    .set(
+      parallel
+        ? { 'camera.projection': 'orthographic', 'camera.view_height': Number(height.toPrecision(6)) }
+        : { 'camera.projection': 'perspective' },
+      gesture('camera'),
+    )
+    .catch(lab.fail);
+}
+
 function viewButtons(lab) {
+  const parallel = button('Orthographic', () => setProjection(lab, !lab.state?.camera?.parallel), {
+    small: true,
+    pressed: false,
+    title: 'Parallel rays: sizes do not depend on the distance, as in a technical drawing',
+  });
   const shown = viewCommands(lab).slice(0, 9);
   const nodes = new Map(
     shown.map((each) => [each.name, button(each.label, each.act, { small: true, title: titleOf(each) })]),
   );
-  lab.on('state', ({ view }) => {
+  lab.on('state', ({ view, camera }) => {
     for (const name of ['home', 'keep']) nodes.get(name).disabled = view.kept;
+    parallel.setAttribute('aria-pressed', String(Boolean(camera?.parallel)));
   });
-  return element('div', { class: 'camera-part views', role: 'group', 'aria-label': 'Views' }, ...nodes.values());
+  return element(
+    'div',
+    { class: 'camera-part views', role: 'group', 'aria-label': 'Views' },
+    ...nodes.values(),
+    parallel,
+  );
 }
 
 /* The buttons are always present: a button that appears would resize the image during a drag. */
