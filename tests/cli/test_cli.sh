@@ -60,7 +60,8 @@ check "--version names the version and the build" matches "$(<out)" \
     '^cuvette [0-9]+\.[0-9]+\.[0-9]+ \(build [0-9a-f]{16}(, commit [0-9a-f]+\+?)?\)$'
 run --help
 check "--help succeeds on standard output" silent_success
-for command in render animate scene trace fan section params media mesh study fit compare realism motion lab machine help; do
+for command in render animate scene trace fan section params media mesh study fit compare realism motion lab \
+    machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan section params media mesh study fit compare realism motion lab machine \

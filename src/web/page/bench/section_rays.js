@@ -1,12 +1,12 @@
-/* The rays of the beams in a section: their lines to the edge with arrowheads, and the marks of the hits: normal, angles
- * and refractive indices.
+/* The rays of the beams in a section: their lines to the edge with arrowheads, and the marks of the hits: normal,
+ * angles and refractive indices.
  * exports:
  *   rayMarks(port, plane, segments) -> elements
  *   hitsOf(port, plane, segments) -> [{key, segment, hit, x, y, weight, aside}]  the hits in the window, strongest
  *                                  first; aside: the ray is not in the plane, and is drawn as its projection
  *   hitName(hit) -> text           for screen readers
- *   hitMarks(port, plane, hit, {full, room}) -> elements   full: with the indices, and all digits; room: boxes of labels
- *                                  that exist; none if a label would cover one of them, unless full */
+ *   hitMarks(port, plane, hit, {full, room}) -> elements   full: with the indices, and all digits; room: boxes of
+ *                                  labels that exist; none if a label would cover one of them, unless full */
 
 import { digits, svg } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
