@@ -75,7 +75,7 @@ status study_dry_run(const study *s, const study_request *request, diagnostic *w
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
 
 /* `study run --instructions`: the study runs under valgrind, which counts the instructions of each frame
- * (measure/instruction_dumps.h). Call study_instructions_end whatever study_instructions_begin returned; until then the
+ * (measure/usage.h). Call study_instructions_end whatever study_instructions_begin returned; until then the
  * request borrows from the counted_run. */
 typedef struct counted_run {
     char folder[200];   /* folder of the counts; "": none */

@@ -11,7 +11,7 @@
 #include "cli/study.h"
 #include "cli/terminal.h"
 #include "measure/clock.h"
-#include "measure/instruction_dumps.h"
+#include "measure/usage.h"
 #include "study/run/estimate.h"
 
 #include <errno.h>

@@ -4,7 +4,7 @@
 #include "base/cancel.h"
 #include "base/os_process.h"
 #include "measure/clock.h"
-#include "measure/instruction_dumps.h"
+#include "measure/usage.h"
 #include "scene/model/scene.h"
 
 #include <inttypes.h>

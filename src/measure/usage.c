@@ -1,4 +1,5 @@
-/* Readings of resource usage from getrusage, /proc and clocks: of the process and of one thread. */
+/* Readings of resource usage from getrusage, /proc and clocks: of the process and of one thread; and
+ * the instructions that callgrind counted. */
 #include "measure/usage.h"
 
 #include "measure/clock.h"
@@ -9,6 +10,8 @@
 #include <stdio.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <stdlib.h>
+#include <string.h>
 
 static int64_t difference(int64_t before, int64_t after)
 {
@@ -123,4 +126,44 @@ thread_usage thread_usage_since(const thread_usage *before)
     const double rest_s = u.wall_s - u.running_s - u.runnable_s;
     u.blocked_s = rest_s < 0.0 ? 0.0 : rest_s; /* the clocks are read one after another; NaN remains */
     return u;
+}
+
+/* --- instructions: the files of callgrind, PATH.1, PATH.2, ...; a line "totals: N" has the sum --- */
+
+static const char *path_of_dumps(void)
+{
+    const char *path = getenv(INSTRUCTION_DUMPS_VARIABLE);
+    return path && path[0] ? path : NULL;
+}
+
+bool instruction_dumps_exist(void)
+{
+    return path_of_dumps() != NULL;
+}
+
+static int64_t read_total(const char *path)
+{
+    char line[512];
+    int64_t total = -1;
+    FILE *file = fopen(path, "re");
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, "totals: %" SCNd64, &total) == 1)
+            break;
+    if (file)
+        fclose(file);
+    return total;
+}
+
+int64_t instruction_dumps_next(instruction_dumps *dumps)
+{
+    const char *path = path_of_dumps();
+    char name[1024];
+    int64_t total = -1;
+    while (path && snprintf(name, sizeof name, "%s.%ld", path, dumps->last + 1) < (int)sizeof name &&
+           access(name, R_OK) == 0) {
+        dumps->last++;
+        total = read_total(name);
+        unlink(name);
+    }
+    return total;
 }

@@ -3,7 +3,7 @@
 
 #include "base/counters.h"
 #include "base/status.h"
-#include "render/plan/frame_report.h"
+#include "render/plan/schedule.h"
 #include "scene/model/render_settings.h"
 
 #include <stdbool.h>

@@ -11,7 +11,7 @@
 
 #include "base/counters.h"
 #include "base/isa.h"
-#include "render/plan/frame_report.h"
+#include "render/plan/schedule.h"
 #include "render/plan/plan.h"
 
 typedef struct caustics caustics;

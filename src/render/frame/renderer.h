@@ -10,7 +10,6 @@
 #include "measure/topology.h"
 #include "measure/usage.h"
 #include "render/plan/film.h"
-#include "render/plan/frame_report.h"
 #include "render/plan/schedule.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"

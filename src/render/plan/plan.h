@@ -7,7 +7,7 @@
 #include "geometry/mesh/mesh.h"
 #include "geometry/scene_geometry.h"
 #include "optics/crystal.h"
-#include "render/plan/frame_report.h"
+#include "render/plan/schedule.h"
 #include "render/plan/layered_table.h"
 #include "render/plan/lights.h"
 #include "render/plan/rough_energy.h"

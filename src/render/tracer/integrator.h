@@ -17,7 +17,6 @@
 
 #include "geometry/rays.h"
 #include "render/plan/film.h"
-#include "render/plan/frame_report.h"
 #include "render/plan/plan.h"
 #include "render/plan/schedule.h"
 #include "render/tracer/queue.h"

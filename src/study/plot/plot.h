@@ -39,7 +39,7 @@ void plot_script_open(FILE *out, const char *by, const char *base, const char *d
 void plot_script_text(FILE *out, const char *text);
 
 /* The parts of a figure, private to study/plot. A plan is made in this order: the table, its shown rows and linked
- * parameters (plot_axes.c), the kind (plot_choose.c), measured and published points (plot_data.c), scales
+ * parameters (plot_axes.c), the kind (plot.c), measured and published points (plot_data.c), scales
  * (plot_scale.c), layout with captions (plot_layout.c); then the data (plot_data.c) and the script (plot_script.c) are
  * written. Ownership: plot_plan_free releases a plan, also an unfinished one; the study and the request are borrowed.
  * Errors: as in plot.h. */

@@ -4,7 +4,7 @@
 #include "base/installed.h"
 #include "base/os_process.h"
 #include "base/status.h"
-#include "measure/instruction_dumps.h"
+#include "measure/usage.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdint.h>
