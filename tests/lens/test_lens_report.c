@@ -544,7 +544,7 @@ static lens_report report_of_scene(const bench *b, const char *const *changes)
 {
     scene *s;
     diagnostic why = {.what = ""};
-    lens_report out;
+    lens_report out = {0};
     lens_place place;
     lens_prescription p;
     assert_int_equal(lens_scene_create(&b->p, NULL, &s, &why), STATUS_OK);

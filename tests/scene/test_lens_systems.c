@@ -116,9 +116,11 @@ static void a_mangin_mirror_focuses_by_its_vergences(void **state)
     assert_int_equal(s->solid_count >= 3, 1); /* glass, mirror, screen: the way back has no glass of its own */
     assert_int_equal(scene_find_solid(s, "objective-3"), -1);
     diagnostic why = {.what = ""};
-    if (lens_of_scene(s, "objective", &again, NULL, &why) != STATUS_OK)
+    lens_placement place;
+    if (lens_of_scene(s, "objective", &again, &place, &why) != STATUS_OK)
         fail_msg("%s; %s", why.what, why.remedy);
     assert_same_system(&p, &again, 1e-10, "mangin");
+    assert_near(place.position.z, 0.0, 0.0, "the ring of the stop is before the surface whose edge it is");
     lens_prescription_release(&again);
     scene_destroy(s);
     lens_prescription_release(&p);

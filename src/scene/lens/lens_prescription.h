@@ -265,7 +265,8 @@ status lens_add_to_scene(scene *s, const lens_prescription *p, const lens_placem
 status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses, scene **out, diagnostic *why);
 
 /* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or "":
- * all of the scene) must have one common axis, in the order of their positions along it. The stop is the cup
+ * all of the scene) must have one common axis, in the order of their positions along it; with mirrors, they are in the
+ * order of the light, along the axis as mirrors fold it, and lenses that it meets again count again. The stop is the cup
  * NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that
  * ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's
  * data must be loaded (scene_load) for media of files. Fields, wavelengths, the

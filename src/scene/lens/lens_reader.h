@@ -137,6 +137,7 @@ typedef struct lens_finder {
     size_t count;
     vec3 origin, axis;
     const solid *stop, *screen;
+    double first; /* the height of the first surface, which may be the plane of the stop */
     bool mirrors;
     /* while the surfaces are read: the present part of the axis, at the last vertex; the height of that vertex, and the
      * direction of the light, 1 or -1, in the unfolded system */

@@ -105,14 +105,15 @@ static status find(lens_finder *f)
 
 /* --- the stop --- */
 
-/* A plane between the surfaces `at` - 1 and `at`, at y; y_before is that of the surface before it. */
+/* A plane between the surfaces `at` - 1 and `at`, at y; y_before is that of the surface before it, or of the first
+ * one. */
 static void insert_stop(lens_prescription *p, size_t at, double y, double y_before, double diameter)
 {
     lens_surface *s = &p->surface[at];
     memmove(s + 1, s, (p->count++ - at) * sizeof *s);
     *s = (lens_surface){.diameter = diameter, .medium = {.kind = LENS_AIR, .glass_file = -1}};
     if (at == 0) {
-        s->thickness = lens_tidy(-y);
+        s->thickness = lens_tidy(y_before - y);
     } else {
         s->thickness = lens_tidy(s[-1].thickness - (y - y_before));
         s[-1].thickness = lens_tidy(y - y_before);
@@ -121,12 +122,12 @@ static void insert_stop(lens_prescription *p, size_t at, double y, double y_befo
 }
 
 /* A ring at the edge of a surface makes that surface the stop; another one is a plane in the air. */
-static status read_stop(const lens_finder *f)
+static status read_stop(lens_finder *f)
 {
     lens_prescription *p = f->p;
     const double k = lens_size_of(f->stop), half = k * f->stop->shape.inner_radius, height = k * f->stop->shape.height,
                  from = lens_along(f, f->stop), rounding = 1e-9 * half;
-    double y = 0.0, y_before = 0.0;
+    double y = f->first, y_before = y;
     size_t after = 0; /* the first surface beyond the plane */
     p->aperture_kind = LENS_APERTURE_STOP;
     for (size_t i = 0; i < p->count; i++) {
@@ -142,17 +143,16 @@ static status read_stop(const lens_finder *f)
             after = i + 1, y_before = y;
         y += p->surface[i].thickness;
     }
-    insert_stop(p, after, from + 0.5 * height, y_before, 2.0 * half);
+    y = from + 0.5 * height;
+    insert_stop(p, after, y, after == 0 ? f->first : y_before, 2.0 * half);
+    f->first = after == 0 ? y : f->first;
     return STATUS_OK;
 }
 
-/* Where the first surface of the prescription is, which may be the stop before the first lens. */
 static lens_placement placement_found(const lens_finder *f)
 {
-    const double stop_y =
-        f->stop ? lens_along(f, f->stop) + 0.5 * lens_size_of(f->stop) * f->stop->shape.height : INFINITY;
     return (lens_placement){.name = f->stop ? f->stop->name : NULL,
-                            .position = vec3_add(f->origin, vec3_scale(f->axis, fmin(stop_y, f->lens[0].y_1))),
+                            .position = vec3_add(f->origin, vec3_scale(f->axis, f->first)),
                             .rotation_deg = f->lens[0].of->shape.rotation_deg,
                             .scale = 1.0};
 }
@@ -168,6 +168,7 @@ status lens_of_scene(const scene *s, const char *name, lens_prescription *out, l
         out->unit_mm = 1000.0 * s->render.unit_m;
         snprintf(out->title, sizeof out->title, "%.255s", s->title);
         code = find(f);
+        f->first = f->lens[0].y_1;
         THEN(code, lens_read_surfaces(f));
         if (code == STATUS_OK && f->stop)
             code = read_stop(f);
