@@ -116,8 +116,8 @@ inert_rule moves_sky, black_lamp, depolarised, size_unsampled, lights_nothing, u
 
 /* --- rules of solids, meshes and textures: inert_objects.c --- */
 
-inert_rule overlaps_unseen, looks_the_same, unshaded, one_mesh, no_point_files, unused_mesh, at_rest, unused_texture,
-    of_floats, unused_data, not_of_file, by_data, not_turbid, no_data_layer;
+inert_rule overlaps_unseen, flat_side, looks_the_same, unshaded, one_mesh, no_point_files, unused_mesh, at_rest,
+    unused_texture, of_floats, unused_data, not_of_file, by_data, not_turbid, no_data_layer;
 
 /* --- rules of a surface, c->m on c->owner: inert_material.c --- */
 

@@ -1,4 +1,5 @@
 /* Facts of lights, beams, the sky, solids, meshes and textures that leave their parameters without effect. */
+#include "geometry/shapes/lens_profile.h"
 #include "geometry/shapes/shape.h"
 #include "lint/inert.h"
 #include "scene/model/cover.h"
@@ -234,6 +235,19 @@ static bool is_plain(const scene *s, const material *m)
 {
     const bool checkered = m->checker > 0.0 && memcmp(&m->color, &m->checker_color, sizeof m->color) != 0;
     return !shows_color(s, m) || !(checkered || m->texture[0]);
+}
+
+/* A side of a lens without radii and coefficients is flat in any form. */
+bool flat_side(const inert_case *c)
+{
+    const solid_shape *s = &c->owner->shape;
+    const int k = strcmp(c->at.row->name, "form_2") == 0;
+    const lens_profile side = lens_profile_of(s, k);
+    if (!lens_is_flat(&side) || (k == 0 ? s->radius_1_x : s->radius_2_x) != 0.0)
+        return false;
+    return inert_say(c, "flat-side",
+                     inert_set("%s.radius_%d_x=%.9g", c->name, k + 1, (k == 0 ? 2.0 : -2.0) * s->diameter).text,
+                     "side %d of %s is flat, in every form", k + 1, c->name);
 }
 
 bool looks_the_same(const inert_case *c)

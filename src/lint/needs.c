@@ -231,6 +231,7 @@ static const needs_row rows[] = {
     FACT(SOLID, "points", no_point_files),
     NEEDS_SET(SOLID, "conic_1", "radius_1!=0", "%.radius_1=2"),
     NEEDS_SET(SOLID, "conic_2", "radius_2!=0", "%.radius_2=-2"),
+    FACT(SOLID, "form_1 form_2", flat_side),
     NEEDS_SET(SOLID, "radius_1_x", "form_1!=round", "%.form_1=toric"),
     NEEDS_SET(SOLID, "radius_2_x", "form_2!=round", "%.form_2=toric"),
     NEEDS_SET(SOLID, "conic_1_x", "form_1=biconic", "%.form_1=biconic"),

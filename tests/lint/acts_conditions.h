@@ -10,6 +10,7 @@ typedef struct condition {
     bool works;
 } condition;
 static const condition conditions[] = {
+    {"magnifier", "", "collector.form_2", "flat-side", true},
     {"rod", "lamp.intensity=0", "render.shadows", "no-lamp", true},
     {"rod", "lamp.intensity=0 background.ambient=0,0,0", "render.caustics", "no-lamp", true},
     {"rod", "render.caustics=photons lamp.intensity=0", "render.photons", "no-lamp", true},
