@@ -1,6 +1,6 @@
 /* Lists the files of the folder that the laboratory can open: classified by extension; scenes, hand scripts and optical
- * data, all YAML, by their keys; tables of lenses and of optical data by the words of their header. Breadth-first, so that a large deep folder cannot hide the files above it when a limit
- * is reached. */
+ * data, all YAML, by their keys; tables of lenses and of data by their header. Breadth-first, so that a large deep
+ * folder cannot hide the files above it when a limit is reached. */
 #include "base/array.h"
 #include "base/json_build.h"
 #include "base/status.h"

@@ -170,7 +170,7 @@ function spots(report, nm) {
   const all = wavelengths(report);
   const list = records(report, 'spot');
   const dots = records(report, 'spot-points').filter((each) => !nm || each.lambda_nm === nm);
-  const airy = Math.max(...list.map((each) => numberOf(each.airy_radius)).filter(Number.isFinite));
+  const airy = numberOf(list.find((each) => each.lambda_nm === nm)?.airy_radius); /* 0: of the primary one */
   const ends = endsOf([airy, ...dots.flatMap(({ dx, dy }) => [dx, dy])]);
   const ofField = ({ field, label }) =>
     drawing(

@@ -4,8 +4,8 @@
  *   x: {label, log, values, ends}       values: words of a categorical axis; points are then at 0, 1, 2 ..
  *   y: {label, log, ends}               ends: [from, to] of the axis, instead of those of the points
  *   series: [{name, points: [{x, y, low, high}], shape, colour, dash, marked, joined}]      low and high NaN: no
- *     interval is known; shape: 'dots', or 'bars' from 0 next to each other; colour and dash: numbers from 0, instead of
- *     the place in the list; marked or joined false: without markers or without the line
+ *     interval is known; shape: 'dots', or 'bars' from 0 next to each other; colour and dash: numbers from 0, instead
+ *     of the place in the list; marked or joined false: without markers or without the line
  *   width, height: of the drawing in its own units; legends false: none
  *   heading: title of the legend, the parameters in which the series differ
  *   mark: a value of y with a horizontal line, such as 1 for ratios
