@@ -454,9 +454,10 @@ static status check_ends(const scene *s, const solid *owner, diagnostic *why)
 {
     if (!solid_has_ends(owner) || !owner->visible)
         return STATUS_OK;
-    if (integrator_traits_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn && !material_is_opaque(&owner->surface))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to whitted, or remove material_1 .. material_rim",
-                        "%.80s: the depth buffer does not support materials of parts of its surface", owner->name);
+                        "%.80s: the depth buffer does not support materials of parts of a transparent solid",
+                        owner->name);
     if (owner->surface.extraordinary_ior > 0.0)
         return diagnose(why, STATUS_BAD_INPUT, "set its extraordinary_ior to 0, or remove material_1 .. material_rim",
                         "%.80s: a crystal has one material", owner->name);

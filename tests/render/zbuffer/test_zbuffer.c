@@ -16,14 +16,16 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-#define HEAD                                                                                         \
-    "render: {width: 200, height: 150, depth: 0, shadows: off, lighting: phong}\n"                   \
-    "camera: {position: [0, 3, -8], target: [0, 0.8, 0], fov_deg: 40}\n"                             \
-    "background: {kind: gradient, color: [0.1, 0.2, 0.3], ambient: [0.5, 0.6, 0.7]}\n"               \
-    "lights: {lamp: {position: [4, 7, -5]}, other: {position: [-6, 2, -1], color: [0.2, 0.3, 1]}}\n" \
-    "materials:\n"                                                                                   \
-    "  dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2]}\n"   \
-    "  tiles: {diffuse: 0.7, ambient: 0.1, checker: 0.25, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4]}\n"
+#define HEAD                                                                                                         \
+    "render: {width: 200, height: 150, depth: 0, shadows: off, lighting: phong}\n"                                   \
+    "camera: {position: [0, 3, -8], target: [0, 0.8, 0], fov_deg: 40}\n"                                             \
+    "background: {kind: gradient, color: [0.1, 0.2, 0.3], ambient: [0.5, 0.6, 0.7]}\n"                               \
+    "lights: {lamp: {position: [4, 7, -5]}, other: {position: [-6, 2, -1], color: [0.2, 0.3, 1]}}\n"                 \
+    "materials:\n"                                                                                                   \
+    "  dull: {diffuse: 0.7, ambient: 0.1, specular: 0.4, shininess: 40, color: [0.8, 0.3, 0.2]}\n"                   \
+    "  tiles: {diffuse: 0.7, ambient: 0.1, checker: 0.25, color: [0.8, 0.8, 0.8], checker_color: [0.2, 0.3, 0.4]}\n" \
+    "  green: {diffuse: 0.8, ambient: 0.2, color: [0.1, 0.9, 0.1]}\n"                                                \
+    "  glow: {diffuse: 0.3, emission: 0.4, specular: 0.5, shininess: 9, color: [0.9, 0.1, 0.7]}\n"
 
 static const char flat_scene[] = HEAD
     "meshes: {prism: {generate: lathe, around: 5, crease_deg: 0, profile: [0, 0, 0.7, 0, 0.5, 1, 0, 1]}, soup: "
@@ -94,6 +96,8 @@ static void flat_solids_equal_ray_casting_except_at_edges(void **state)
                                            "camera.position=-2.4,0.9,-0.8 camera.target=-2,0.5,3",
                                            "camera.position=0,30,0 camera.target=0,0,0.001",
                                            "lamp.reach=8 camera.fov_deg=150",
+                                           "crate.material_1=glow crate.material_2=green",
+                                           "crate.material_rim=glow render.samples=4",
                                            "camera.position=0,0.2,-3 camera.pitch_deg=60"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         const double share = share_beyond(flat_scene, variants[v], 1e-6);
@@ -112,6 +116,9 @@ static void round_solids_equal_ray_casting_except_at_outlines(void **state)
                                            "render.samples=4",
                                            "camera.position=-0.9,4,-1.2 camera.target=-0.9,0,-1",
                                            "camera.position=0.6,2,-0.5 camera.target=0.6,0.5,0.5",
+                                           "can.material_1=glow can.material_2=green camera.position=0,5,-6",
+                                           "dish.material_1=green dish.material_2=glow pebble.material_rim=glow "
+                                           "can.material_rim=green pebble.material_1=green",
                                            "cup.m=1.6",
                                            "cup.m=0.6 cup.inner_radius=0.5",
                                            "camera.roll_deg=33"};
