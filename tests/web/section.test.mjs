@@ -252,6 +252,43 @@ export const cases = {
     t.equal(await screen.page.locator('.section-print').count(), 0, 'nothing is left after the print');
   },
 
+  'turns in any plane, and the plane through the axis of a leaning solid': async (t) => {
+    const { screen } = await opened(t);
+    const found = await screen.page.evaluate(async () => {
+      const { turnAbout } = await import('./bench/section_plane.js');
+      const right = [0.6, 0.8, 0];
+      const up = [-0.48, 0.36, 0.8];
+      const normal = [0.64, -0.48, 0.6];
+      return [
+        turnAbout({ right, up, normal }, 35),
+        turnAbout({ right: [1, 0, 0], up: [0, 0, 1], normal: [0, -1, 0] }, 35),
+      ];
+    });
+    const turned = (point, angles) =>
+      angles.reduce((p, degrees, axis) => {
+        const [sin, cos] = [Math.sin((degrees * Math.PI) / 180), Math.cos((degrees * Math.PI) / 180)];
+        const [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        const q = [...p];
+        q[i] = cos * p[i] - sin * p[j];
+        q[j] = sin * p[i] + cos * p[j];
+        return q;
+      }, point);
+    const [c, s] = [Math.cos((35 * Math.PI) / 180), Math.sin((35 * Math.PI) / 180)];
+    const to = turned([0.6, 0.8, 0], found[0]);
+    [0.6 * c - 0.48 * s, 0.8 * c + 0.36 * s, 0.8 * s].forEach((x, axis) =>
+      t.near(to[axis], x, 1e-12, `coordinate ${axis} of a turned vector`),
+    );
+    const top = turned([1, 0, 0], found[1]);
+    t.near(top[2], s, 1e-12, 'from x towards z');
+    await screen.page.evaluate(() => window.lab.set({ 'lens.rotation': [0, 0, -70] }));
+    await screen.page.evaluate(() => window.lab.choice.choose('lens'));
+    await screen.page.evaluate(() => window.lab.section.open('axis'));
+    await screen.until(() => window.lab.section.view === 'axis');
+    await settled(screen);
+    const { right } = await screen.page.evaluate(() => window.lab.section.plane);
+    t.near(Math.abs(right[0]), Math.cos((20 * Math.PI) / 180), 1e-12, 'the axis along the page');
+  },
+
   'an orthographic image shows the same height at the pivot': async (t) => {
     const lab = await t.lab(SCENE);
     const screen = await t.open(lab);
