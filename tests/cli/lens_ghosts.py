@@ -59,7 +59,7 @@ for case in range(6):
             )
             scene.write(f'  {name}: {{transparency: 1, ior: {n}, coating: "{layers}"}}\n')
         scene.write(
-            "lens_systems:\n  objective:\n    pupil: 5\n    surfaces:\n"
+            "background: {ior: 1}\nlens_systems:\n  objective:\n    pupil: 5\n    surfaces:\n"
             "      - {radius: 60, thickness: 4, medium: 1.5, diameter: 20, stop: on}\n"
             "      - {radius: -200, thickness: 3, diameter: 20}\n"
             "      - {radius: 80, thickness: 3, medium: 1.7, diameter: 20}\n"

@@ -6,8 +6,8 @@
  * to the next vertex, and is below 0 where the light travels back after a mirror. Lengths are in the unit of the
  * prescription, unit_mm millimetres.
  *
- * Ownership: lens_prescription_release frees surfaces and `kept`; names are within the structure. A law's optical data are
- * borrowed from the scene or held by the caller. Errors: STATUS_BAD_INPUT with file, line, column and remedy. */
+ * Ownership: lens_prescription_release frees surfaces and `kept`; names are within the structure. A law's optical data
+ * are borrowed from the scene or held by the caller. Errors: STATUS_BAD_INPUT with file, line, column and remedy. */
 #pragma once
 
 #include "geometry/primitives/asphere.h"
