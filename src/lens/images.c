@@ -53,6 +53,7 @@ static status put_fan(lens_study *s, size_t field, lens_beam *bundle, vec3 about
 typedef struct spot {
     double *x, *y; /* of rays that pass, from the primary wavelength's chief ray */
     int count, launched, early, lost[LENS_SURFACES_MAX + 1];
+    double surfaces, media, all; /* sums of the parts of light that surfaces, media and both pass on */
 } spot;
 
 /* A square grid of cell centres within the pupil. */
@@ -75,6 +76,7 @@ static status spot_trace(lens_study *s, lens_beam *bundle, vec3 about, spot *out
             if (r.loss == LENS_PASSES) {
                 out->x[out->count] = r.image.x - about.x, out->y[out->count] = r.image.y - about.y;
                 out->count++;
+                out->surfaces += r.surfaces, out->media += r.media, out->all += r.surfaces * r.media;
             } else if (r.loss == LENS_LOST_EARLY) {
                 out->early++;
             } else {
@@ -155,6 +157,24 @@ static void put_vignetting(lens_study *s, size_t field, const spot *one)
         }
 }
 
+/* Of the rays that arrive. */
+static void put_transmission(lens_study *s, size_t field, const spot *spots)
+{
+    double sum = 0.0, weight = 0.0;
+    for (size_t w = 0; w < s->waves; w++) {
+        const spot *one = &spots[w];
+        const double n = one->count ? (double)one->count : (double)NAN;
+        const lens_row key = keyed("transmission", field, s->model[w].lambda_nm, NAN);
+        put(s->out, key, "surfaces", "", one->surfaces / n);
+        put(s->out, key, "media", "", one->media / n);
+        put(s->out, key, "transmission", "", one->all / n);
+        sum += wave_weight(s, w) * one->all / n, weight += wave_weight(s, w);
+        if (w == s->primary)
+            s->transmitted = one->all / n;
+    }
+    put(s->out, keyed("transmission", field, 0.0, NAN), "transmission", "", sum / weight);
+}
+
 static void put_points(lens_study *s, size_t field, const spot *spots)
 {
     for (size_t w = 0; w < s->waves; w++)
@@ -200,6 +220,7 @@ static status trace_field(lens_study *s, size_t field, spot *spots, diagnostic *
         TRY(spot_trace(s, &bundle, about, &spots[w], why));
     }
     put_vignetting(s, field, &spots[s->primary]);
+    put_transmission(s, field, spots);
     put_spots(s, field, spots);
     put_points(s, field, spots);
     put_mtf(s, field, spots, t);

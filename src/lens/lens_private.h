@@ -73,6 +73,7 @@ typedef struct lens_ray {
     vec3 along[LENS_SURFACES_MAX + 1]; /* before surface i; the last is that at the image */
     vec3 image, direction;             /* on the image's surface; unit vector */
     double path, stop_x, stop_y;       /* optical path from the start to the image's surface */
+    double surfaces, media;            /* parts of unpolarised light that they pass on */
     lens_loss loss;
     int lost_at;
 } lens_ray;
@@ -156,6 +157,8 @@ typedef struct lens_study {
     lens_first first; /* at the primary wavelength */
     size_t waves, primary;
     double frequency_most;
+    double solid_angle,
+        transmitted; /* of a field that was computed, at the primary wavelength: lens_waves, lens_images */
 } lens_study;
 
 static inline void lens_row_put(lens_report *r, lens_row row)

@@ -27,6 +27,8 @@ status lens_bench_open(const lens_model *m, const lens_place *at, isa level, len
     const status code = probe_create(copy, level, &out->p, why);
     scene_destroy(copy);
     if (code == STATUS_OK)
+        probe_use_one_wavelength(out->p);
+    if (code == STATUS_OK)
         probe_limit_depth(out->p, 4 * m->count + 16, "give a lens of fewer surfaces");
     return code;
 }
@@ -110,6 +112,7 @@ static bool go_on(walk *w, bool mirror)
 {
     const ray_node *now = &w->b->tree.node[w->node];
     w->out->path += now->n / w->b->around * (now->hit.t / w->b->at->scale);
+    w->out->media *= now->hit.transmittance[0];
     w->node++;
     if (w->node >= w->b->tree.count)
         return false;
@@ -193,6 +196,7 @@ status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagn
 {
     const lens_model *m = b->m;
     out->start = from, out->launched = along, out->path = 0.0, out->loss = LENS_LOST_EARLY;
+    out->surfaces = out->media = 1.0;
     out->stop_x = out->stop_y = NAN;
     TRY(probe_path(b->p, vec3_add(b->at->origin, turned(b->at, vec3_scale(from, b->at->scale))), turned(b->at, along),
                    -1, &b->tree, why));
@@ -201,6 +205,7 @@ status lens_ray_trace(lens_bench *b, vec3 from, vec3 along, lens_ray *out, diagn
         const ray_hit *hit = &b->tree.node[w.node].hit;
         b->R[i] = m->step[i].silent ? 0.0 : hit->R;
         b->T[i] = m->step[i].silent ? 1.0 : hit->T;
+        out->surfaces *= m->step[i].mirror ? b->R[i] : b->T[i];
         const bool passes = pass(&w, i);
         if (i == m->stop && (passes || m->step[i].silent))
             out->stop_x = out->hit[i].x, out->stop_y = out->hit[i].y, out->loss = LENS_LOST;

@@ -72,6 +72,15 @@ static const lens_section sections[] = {
     {.name = "vignetting-surfaces",
      .x = "",
      .meaning = "where the others are lost; one more than the last surface: before the image"},
+    {.name = "transmission",
+     .x = "",
+     .meaning =
+         "the part of unpolarised light that surfaces with their coatings (Fresnel) and media (Beer and Lambert) "
+         "pass on, mean of the rays that arrive; lambda_nm 0: all wavelengths by their weights"},
+    {.name = "illumination",
+     .x = "",
+     .meaning = "the solid angle of the light at the image, projected on it, and by that and the transmission the "
+                "illuminance relative to field 1, both at the primary wavelength"},
     {.name = "mtf-geometric",
      .x = "cycles/mm",
      .meaning = "transform of the spots of all wavelengths, without diffraction",
@@ -274,6 +283,22 @@ static void run_field(void *context, size_t i, int member)
     close_benches(&t->study);
 }
 
+/* E = T L times the projected solid angle (Born and Wolf, Principles of Optics, 4.8). */
+static void put_illumination(const lens_study *s, const field_task *task, size_t count)
+{
+    const double first = task[0].study.solid_angle * task[0].study.transmitted;
+    for (size_t i = 0; i < count; i++) {
+        lens_row row = {.section = "illumination", .field = (int)i + 1, .x = NAN};
+        row.lambda_nm = s->model[s->primary].lambda_nm;
+        row.quantity = "solid_angle", row.unit = "sr", row.value = task[i].study.solid_angle;
+        lens_row_put(s->out, row);
+        row.quantity = "relative", row.unit = "";
+        row.value =
+            task[i].study.solid_angle > 0.0 ? task[i].study.solid_angle * task[i].study.transmitted / first : 0.0;
+        lens_row_put(s->out, row);
+    }
+}
+
 static status run_fields(const lens_study *s, const lens_place *at, isa level, diagnostic *why)
 {
     const size_t count = s->p->field_count;
@@ -288,6 +313,8 @@ static status run_fields(const lens_study *s, const lens_place *at, isa level, d
     }
     if (code == STATUS_OK)
         thread_team_run(team, run_field, &all, count);
+    if (code == STATUS_OK)
+        put_illumination(s, all.task, count);
     for (size_t i = 0; all.task && i < count; i++) {
         field_task *t = &all.task[i];
         if (code == STATUS_OK && t->code != STATUS_OK) {

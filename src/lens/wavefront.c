@@ -332,6 +332,8 @@ static status one_wave(lens_study *s, size_t field, size_t w, vec3 about, lens_s
     lens_pupil p = {.n = 0};
     image_grid g = {.intensity = NULL};
     status code = put_wave(s, key, samples, scale, &p, &g, why);
+    if (w == s->primary)
+        s->solid_angle = p.area * p.step * p.step;
     THEN(code, add_mtf(s, &p, &g, scale, s->p->wavelength[w].weight, shift, mtf, why));
     free(g.intensity);
     lens_pupil_release(&p);

@@ -86,6 +86,17 @@ def meridional(y, u, nm):
     return y + s * dy, dy, path + s, stop
 
 
+def transmission():
+    """Of the surfaces, on the axis, by wavelength: Fresnel at normal incidence."""
+    for nm, _ in WAVES:
+        surfaces, n = 1.0, 1.0
+        for _, _, glass, _ in SURFACES:
+            after = index(glass, nm)
+            surfaces *= 1.0 - ((after - n) / (after + n)) ** 2
+            n = after
+        print(f'{nm:.4f} {surfaces:.6f}')
+
+
 def strehl():
     """On the axis, by wavelength: the Debye integral along the pupil's radius, for a rotationally symmetric wavefront on
     the sphere about the image's point that reaches to the exit pupil."""

@@ -62,7 +62,8 @@ void probe_use_one_wavelength(probe *p)
     }
     for (int priority_index = 1; priority_index <= p->frame_plan->geometry->region_count; priority_index++) {
         const material *m = p->frame_plan->materials[priority_index];
-        if (m->absorb_spectrum.count == 0 && !m->absorb_values && !p->spectral)
+        const bool has_k = m->medium == MEDIUM_DATA && m->index_data && optical_data_has_k(m->index_data);
+        if (m->absorb_spectrum.count == 0 && !m->absorb_values && !has_k && !p->spectral)
             continue;
         const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
         p->frame_plan->absorption[priority_index] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
