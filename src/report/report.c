@@ -315,10 +315,10 @@ static json_t *clock_json(clock_quality clock)
 
 json_t *machine_json(const machine_report *a)
 {
-    char *summary = topology_summary(a->machine);
+    char *units = topology_summary(a->machine);
     json_t *o = json_object();
     int bad = json_object_set_new(o, "schema", json_integer(1));
-    bad |= json_object_set_new(o, "machine", summary ? json_of_text(summary) : NULL);
+    bad |= json_object_set_new(o, "machine", units ? json_of_text(units) : NULL);
     bad |= json_object_set_new(o, "units", json_integer(topology_pu_count(a->machine)));
     bad |= json_object_set_new(o, "cores", json_integer(topology_core_count(a->machine)));
     bad |= json_object_set_new(o, "packages", json_integer(topology_package_count(a->machine)));
@@ -333,7 +333,7 @@ json_t *machine_json(const machine_report *a)
     bad |= json_object_set_new(o, "compiler", json_string(__VERSION__));
     bad |= json_object_set_new(o, "flags", json_string(CUVETTE_COMPILER_FLAGS));
     bad |= json_object_set(o, "disturbances", a->disturbances);
-    free(summary);
+    free(units);
     return json_if(o, bad == 0);
 }
 
