@@ -1,5 +1,6 @@
 # The page of `cuvette lens report --figure`, which writes this script with the style and these: rows, the report as
-# CSV; lens, its title; fields, their number; field_unit; waves, the wavelengths in nm; first, the lens in a line.
+# CSV; lens, its title; fields, their number; field_unit; waves, the wavelengths in nm; first, the lens in a line; $sides,
+# $axial and $slanting, the lens and paraxial rays as points z, y.
 set datafile separator comma
 set datafile missing NaN
 set termoption noenhanced
@@ -30,21 +31,46 @@ $origin << END
 END
 set multiplot
 
+# Rows of panels, from the top.
+top(r) = word("0.945 0.795 0.660 0.520 0.375 0.245 0.115", r) + 0.0
+bottom(r) = word("0.850 0.695 0.565 0.405 0.285 0.155 0.030", r) + 0.0
+panel(i, n, r) = place(i, n, top(r), bottom(r))
+
+# The lens, and which colour is which wavelength.
+eval panel(1, 1, 1)
+set size ratio -1
+set autoscale fix
+unset border
+unset tics
+set key at screen 0.985,0.945 right top font ",7" samplen 1.5
+plot $sides using 1:2 with lines lw 1.2 lc rgb ink notitle, \
+    $axial using 1:2 with lines lw 0.7 lc rgb grey notitle, \
+    $slanting using 1:2 with lines lw 0.7 lc rgb blue notitle, \
+    for [i=1:words(waves)] NaN with lines lw 1.4 lc rgb colour(i) title word(waves, i)." nm", \
+    NaN with lines lw 1.4 dt (4,3) lc rgb ink title "sagittal", \
+    for [f=1:across] NaN with lines lt f title sprintf("by field: %d", f)
+unset key
+unset label 1
+unset label 2
+set border
+set tics font ",7"
+set size noratio
+set autoscale
+
 # Ray fans and wavefronts by field.
 set xrange [-1:1]
 set xtics -1,0.5,1
 set xzeroaxis lt 8
 set yrange [*<-1e-6:1e-6<*]
 do for [f=1:across] {
-    eval place(f, across, 0.930, 0.800)
+    eval panel(f, across, 2)
     set title label_of(f)
     set ylabel f == 1 ? "ray aberration, mm" : ""
     set xlabel ""
     plot $origin using 1:2 with dots lc rgb "white" notitle, \
         for [i=1:words(waves)] rows using (curve("fan-tangential", f, nm(i), "e_tangential")):7 with lines lw 1.4 lc rgb colour(i), \
         for [i=1:words(waves)] rows using (curve("fan-sagittal", f, nm(i), "e_sagittal")):7 with lines lw 1.4 dt (4,3) lc rgb colour(i)
-    if (f == 1) { unset label 1; unset label 2 }
-    eval place(f, across, 0.770, 0.640)
+    eval panel(f, across, 3)
     set title ""
     set ylabel f == 1 ? "wavefront, waves" : ""
     set xlabel "pupil"
@@ -68,13 +94,13 @@ set xtics -most/1.1,most/1.1,most/1.1 format "%.2g"
 set ytics -most/1.1,most/1.1,most/1.1 format "%.2g"
 set size ratio -1
 do for [f=1:across] {
-    eval place(f, across, 0.585, 0.440)
+    eval panel(f, across, 4)
     set ylabel f == 1 ? "spot, mm from the chief ray" : ""
     set object 1 circle at 0,0 size airy front fs empty border lc rgb ink lw 0.8
     # dx and dy are rows in turn: x is kept until its y comes.
     plot $origin using 1:2 with dots lc rgb "white", for [i=1:words(waves)] keep = 0.0 rows using \
         (strcol(1) eq "spot-points" && strcol(6) eq "dx" ? (keep = column(7), NaN) : pick("spot-points", f, nm(i), "dy") ? keep : NaN):7 \
-        with dots lc rgb colour(i)
+        with points pt 7 ps 0.12 lc rgb colour(i)
 }
 unset object 1
 set size noratio
@@ -86,44 +112,67 @@ set autoscale
 set yrange [*<-1e-6:1e-6<*]
 set xtics auto
 set ytics auto
-set key bottom left font ",7" samplen 1.5
-eval place(1, 3, 0.385, 0.235)
-set title "foci of narrow pencils"
+eval panel(1, 3, 5)
+set title "foci of narrow pencils: tangential, sagittal dashed"
 set xlabel sprintf("field, %s", field_unit)
 set ylabel "from the image, mm"
 plot $origin using 1:2 with dots lc rgb "white" notitle, \
-    rows using (curve("field-curves", 0, 0, "tangential")):7 with lines lt 1 title "tangential", \
-    rows using (curve("field-curves", 0, 0, "sagittal")):7 with lines lt 2 dt (4,3) title "sagittal"
-eval place(2, 3, 0.385, 0.235)
+    rows using (curve("field-curves", 0, 0, "tangential")):7 with lines lt 1, \
+    rows using (curve("field-curves", 0, 0, "sagittal")):7 with lines lt 1 dt (4,3)
+eval panel(2, 3, 5)
 set title "distortion"
 set ylabel "%"
 unset key
 plot $origin using 1:2 with dots lc rgb "white" notitle, \
     rows using (curve("field-curves", 0, 0, "distortion")):7 with lines lt 1
-eval place(3, 3, 0.385, 0.235)
+eval panel(3, 3, 5)
 set title "focus by height in the pupil"
 set xlabel "pupil"
 set ylabel "from the image, mm"
 plot $origin using 1:2 with dots lc rgb "white" notitle, \
     for [i=1:words(waves)] rows using (curve("longitudinal", 0, nm(i), "focus")):7 with lines lw 1.4 lc rgb colour(i)
 
-eval place(1, 3, 0.185, 0.045)
-set title "MTF with diffraction; sagittal dashed, limit dotted"
+# By field: lateral colour from the primary wavelength, illuminance and transmission.
+set xrange [*:*]
+by_field(section, nm, quantity) = strcol(1) eq section && (nm == 0 || abs(column(4) - nm) < 1e-6) && \
+    strcol(6) eq quantity ? field_value(int(column(3))) : NaN
+eval panel(1, 3, 6)
+set title "lateral colour"
+set xlabel sprintf("field, %s", field_unit)
+set ylabel "from the primary wavelength, mm"
+plot $origin using 1:2 with dots lc rgb "white", \
+    for [i=1:words(waves)] rows using (by_field("chief", nm(i), "lateral_colour")):7 with linespoints pt 7 ps 0.4 lw 1.4 lc rgb colour(i)
+eval panel(2, 3, 6)
+set title "illuminance, relative to field 1"
+set ylabel ""
+set yrange [0:1.05]
+plot $origin using 1:2 with dots lc rgb "white", \
+    rows using (by_field("illumination", 0, "relative")):7 with linespoints pt 7 ps 0.4 lt 1
+eval panel(3, 3, 6)
+set title "transmission of surfaces and media"
+set yrange [*:*]
+set offsets 0,0,graph 0.1,graph 0.1
+plot for [i=1:words(waves)] rows using (by_field("transmission", nm(i), "transmission")):7 with linespoints pt 7 ps 0.4 lw 1.4 lc rgb colour(i)
+set offsets 0,0,0,0
+
+# A curve for each field.
+set autoscale
+eval panel(1, 3, 7)
+set title "MTF with diffraction, by field; limit grey"
 set xlabel "cycles/mm"
 set ylabel ""
 set yrange [0:1]
-set key top right font ",7" samplen 1.5 noreverse Right
 plot $origin using 1:2 with dots lc rgb "white" notitle, \
-    for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "tangential")):7 with lines lt f title label_of(f), \
+    for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "tangential")):7 with lines lt f notitle, \
     for [f=1:across] rows using (curve("mtf-diffraction", f, 0, "sagittal")):7 with lines lt f dt (4,3) notitle, \
     rows using (curve("mtf-diffraction", 1, 0, "limit")):7 with lines lt 8 notitle
-eval place(2, 3, 0.185, 0.045)
+eval panel(2, 3, 7)
 set title "light within a circle, with diffraction"
 set xlabel "radius, mm"
-set key bottom right
+unset key
 plot $origin using 1:2 with dots lc rgb "white" notitle, \
-    for [f=1:across] rows using (curve("encircled", f, nm(1), "fraction")):7 with lines lt f title label_of(f)
-eval place(3, 3, 0.185, 0.045)
+    for [f=1:across] rows using (curve("encircled", f, nm(1), "fraction")):7 with lines lt f
+eval panel(3, 3, 7)
 set title "Seidel sums by surface"
 set autoscale y
 set offsets 0,0,graph 0.25,0
@@ -132,7 +181,7 @@ set ylabel "mm"
 set style fill solid 1.0 noborder
 set boxwidth 0.15
 set xtics 1
-set key top left font ",7" noreverse Left maxrows 2
+set key at graph 1.02,1.0 left top Left reverse font ",6" samplen 0.6
 kinds = "S_I S_II S_III S_IV S_V"
 plot for [k=1:5] rows using (strcol(1) eq "seidel" && strcol(6) eq word(kinds, k) ? column(2) + 0.16*(k - 3) : NaN):7 \
     with boxes lc rgb colour(k) title word(kinds, k)

@@ -54,7 +54,8 @@ static const command_form form = {
         "Read the prescription of a lens system from a lens file (.zmx of Zemax, .dat of pbrt, or .csv) or from the "
         "lenses of a scene, and print its surfaces and paraxial data, or write it as a scene that can be rendered "
         "at once (.yaml) or as a lens file.\vExamples: cuvette lens triplet.zmx -o triplet.yaml; cuvette lens "
-        "triplet.yaml -o triplet.csv. Manual: cuvette-lens(1).",
+        "triplet.yaml -o triplet.csv. What a lens does: cuvette lens report FILE. Manual: cuvette-lens(1), "
+        "cuvette-lens-report(1).",
 };
 
 /* --- the table --- */

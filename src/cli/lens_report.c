@@ -116,7 +116,8 @@ static const command_form form = {
         "are mm. Rays are aimed at the real stop and traced through solids. For example:\n"
         "  cuvette lens report lens.zmx\n"
         "  cuvette lens report lens.zmx --csv > lens.csv\n"
-        "  cuvette lens report lens.zmx --figure lens.png",
+        "  cuvette lens report lens.zmx --figure lens.png\n"
+        "Manual: cuvette-lens-report(1).",
 };
 
 /* --- the figure --- */
@@ -148,12 +149,88 @@ static double first_number(const lens_report *r, const char *quantity)
     return NAN;
 }
 
+/* --- the lens in the plane of the fields, as blocks of points z y --- */
+
+static void put_point(FILE *out, const lens_surface *s, double z, double y)
+{
+    const double sag = lens_surface_sag(s, fabs(y));
+    if (isfinite(z + sag))
+        fprintf(out, "%.7g,%.7g\n", z + sag, y);
+}
+
+/* The surfaces over their diameters, the rims of glass, and the image. */
+static void put_sides(const lens_prescription *p, double image_y, FILE *out)
+{
+    enum { POINTS = 20 };
+    double z = 0.0;
+    for (size_t i = 0; i < p->count; i++) {
+        const lens_surface *s = &p->surface[i];
+        const double half = 0.5 * s->diameter, next = i + 1 < p->count ? 0.5 * s[1].diameter : 0.0;
+        for (int k = -POINTS; k <= POINTS; k++)
+            put_point(out, s, z, half * k / POINTS);
+        fputc('\n', out);
+        for (int way = -1; way <= 1 && !s->mirror && s->medium.kind != LENS_AIR && i + 1 < p->count; way += 2) {
+            put_point(out, s, z, way * half);
+            put_point(out, s + 1, z + s->thickness, way * next);
+            fputc('\n', out);
+        }
+        z += s->thickness;
+    }
+    fprintf(out, "%.7g,%.7g\n%.7g,%.7g\n", z, -image_y, z, image_y);
+}
+
+/* A paraxial ray: the chief ray and parts of the marginal one, from before the lens to the image. */
+static void put_ray(const lens_prescription *p, const lens_first_order *f, double chief, double part, FILE *out)
+{
+    double y = 0.0, u = chief * f->chief.u[0] + part * f->marginal.u[0], z = 0.0, length = 0.0;
+    for (size_t i = 0; i < p->count; i++)
+        length += fabs(p->surface[i].thickness);
+    y = chief * f->chief.y[0] + part * f->marginal.y[0];
+    const double before = fmin(0.25 * length, p->object_distance);
+    fprintf(out, "%.7g,%.7g\n", -before, y - before * u);
+    for (size_t i = 0; i < p->count; i++) {
+        y = chief * f->chief.y[i] + part * f->marginal.y[i];
+        u = chief * f->chief.u[i + 1] + part * f->marginal.u[i + 1];
+        put_point(out, &p->surface[i], z, y);
+        z += p->surface[i].thickness;
+    }
+    fprintf(out, "%.7g,%.7g\n\n", z, y + u * p->surface[p->count - 1].thickness);
+}
+
+/* The largest part of the marginal ray, above or below the chief ray, that the rims let pass. */
+static double part_that_passes(const lens_prescription *p, const lens_first_order *f, int chief, int way)
+{
+    double part = way;
+    for (size_t i = 0; i < p->count; i++) {
+        const double half = 0.5 * p->surface[i].diameter, m = f->marginal.y[i], c = chief * f->chief.y[i];
+        const double edge = m * part >= 0.0 ? half - c : -half - c, most = m != 0.0 ? edge / m : part;
+        if (half > 0.0 && fabs(c + part * m) > half && most * way >= 0.0)
+            part = most;
+    }
+    return part;
+}
+
+static void put_layout(const lens_prescription *p, FILE *out)
+{
+    const lens_first_order f = lens_first_order_of(p, p->wavelength[p->primary].nm);
+    const double image_y = fabs(f.chief.y[p->count - 1] + f.chief.u[p->count] * p->surface[p->count - 1].thickness);
+    fputs("$sides << END\n", out);
+    put_sides(p, fmax(image_y, 0.25 * f.stop_diameter), out);
+    fputs("END\n", out);
+    for (int chief = 0; chief < 2; chief++) {
+        fprintf(out, "$%s << END\n", chief ? "slanting" : "axial");
+        for (int part = -1; part <= 1; part++)
+            put_ray(p, &f, chief, part ? part_that_passes(p, &f, chief, part) : 0.0, out);
+        fputs("END\n", out);
+    }
+}
+
 static status write_script(const void *content, FILE *out, diagnostic *why)
 {
     const figure_data *d = content;
     const lens_prescription *p = d->p;
     (void)why;
-    plot_script_open(out, "cuvette lens report", d->base, ".rows.csv", 1000, 1400);
+    plot_script_open(out, "cuvette lens report", d->base, ".rows.csv", 1000, 1700);
     fputs("lens = ", out);
     plot_script_text(out, d->title);
     fprintf(out, "\nfields = %zu; field_unit = \"%s\"; waves = \"", p->field_count,
@@ -164,9 +241,10 @@ static status write_script(const void *content, FILE *out, diagnostic *why)
             fprintf(out, " %.10g", p->wavelength[w].nm);
     fprintf(out,
             "\"\nfirst = \"focal length %.6g mm, f/%.4g, entrance pupil %.5g mm, image at %.6g mm from the first "
-            "vertex; nm:\".waves.\" (green, blue, vermillion); sagittal dashed\"\n",
+            "vertex\"\n",
             first_number(d->report, "efl"), first_number(d->report, "f_number"),
             first_number(d->report, "entrance_pupil"), first_number(d->report, "z_image"));
+    put_layout(p, out);
     fputs(lens_figure_script, out);
     return STATUS_OK;
 }

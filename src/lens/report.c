@@ -45,7 +45,7 @@ static const lens_section sections[] = {
                 "distortion from f tan(field), or the magnification",
      .every = 2},
     {.name = "ghosts",
-     .x = "first surface",
+     .x = "then surface",
      .meaning = "light that `surface` and then the surface x reflect: its focus from the image, the "
                 "radius of its blur and its part of the light, along the axis and with coatings"},
     {.name = "ghosts-sum",

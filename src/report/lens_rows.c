@@ -181,6 +181,12 @@ static void write_title(const lens_table *t, int columns, FILE *out)
     wrap_row(out, columns ? columns : 120, start, "%s", t->section->meaning);
 }
 
+/* Less than a femtometre is rounding, as of rays that should meet the axis. */
+static double plain(double value, const char *unit)
+{
+    return strcmp(unit, "mm") == 0 && fabs(value) < 1e-12 ? 0.0 : value;
+}
+
 /* One line for each quantity. */
 static void write_list(const lens_table *t, FILE *out)
 {
@@ -188,7 +194,7 @@ static void write_list(const lens_table *t, FILE *out)
         if (isnan(t->value[i]))
             fprintf(out, "  %-22s %14s\n", t->quantity[i], "-");
         else
-            fprintf(out, "  %-22s %14.8g %s\n", t->quantity[i], t->value[i] + 0.0, t->unit[i]);
+            fprintf(out, "  %-22s %14.8g %s\n", t->quantity[i], plain(t->value[i], t->unit[i]) + 0.0, t->unit[i]);
 }
 
 static void write_cell(FILE *out, double value, const char *format)
@@ -199,19 +205,25 @@ static void write_cell(FILE *out, double value, const char *format)
         fprintf(out, format, value + 0.0);
 }
 
+static int x_wide(const lens_table *t)
+{
+    const int name = (int)strlen(t->section->x);
+    return name > 12 ? name : 12;
+}
+
 static void write_heads(const lens_table *t, FILE *out)
 {
     fputs(t->has_surface ? "  surface" : " ", out);
     fputs(t->has_field ? "  field" : "", out);
     fputs(t->has_lambda ? "  lambda_nm" : "", out);
     if (t->has_x)
-        fprintf(out, " %12.12s", t->section->x);
+        fprintf(out, " %*s", x_wide(t), t->section->x);
     for (int i = 0; i < t->columns; i++)
         fprintf(out, " %*s", strlen(t->quantity[i]) > 12 ? (int)strlen(t->quantity[i]) : 12, t->quantity[i]);
     fputc('\n', out);
     fprintf(out, "%*s", 1 + (t->has_surface ? 8 : 0) + (t->has_field ? 7 : 0) + (t->has_lambda ? 11 : 0), "");
     if (t->has_x)
-        fprintf(out, " %12s", "");
+        fprintf(out, " %*s", x_wide(t), "");
     for (int i = 0; i < t->columns; i++)
         fprintf(out, " %*s", strlen(t->quantity[i]) > 12 ? (int)strlen(t->quantity[i]) : 12, t->unit[i]);
     fputc('\n', out);
@@ -229,14 +241,16 @@ static void write_record(const lens_table *t, size_t at, FILE *out)
         fprintf(out, " %10s", "all");
     else if (t->has_lambda)
         fprintf(out, " %10.6g", key->lambda_nm);
-    if (t->has_x)
+    if (t->has_x) {
+        fprintf(out, "%*s", x_wide(t) - 12, "");
         write_cell(out, key->x, " %12.6g");
+    }
     for (int i = 0; i < t->columns; i++) {
         const double value = t->value[at * LENS_COLUMNS_MAX + (size_t)i];
         const int wide = (int)strlen(t->quantity[i]);
         if (wide > 12)
             fprintf(out, "%*s", wide - 12, "");
-        write_cell(out, value, " %12.6g");
+        write_cell(out, plain(value, t->unit[i]), " %12.6g");
     }
     fputc('\n', out);
 }

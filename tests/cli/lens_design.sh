@@ -79,6 +79,15 @@ equal "and media what Beer's law does" \
     "$(python3 -c 'print(f"{0.9 ** 4.685:.5f}")')"
 equal "the illuminance of field 1 is 1" "$(awk -F, '$1 == "illumination" && $6 == "relative" { print $7 }' slow.rows)" 1
 
+# --- a coating of all faces in air: the cemented ones, nearly without reflection, have none
+(echo coating,ar-broad; cat slow.csv) >coated.csv
+lens coated.csv -g glass.agf -o coated.yaml >/dev/null
+equal "eight faces are coated" "$(grep -cE 'material_[12]: .*-coated' coated.yaml)" 8
+lens report coated.csv -g glass.agf "${quick[@]}" --field 0 |
+    awk -F, '$1 == "transmission" && $6 == "surfaces" && $4 > 587 && $4 < 588 { good = $7 > 0.97 && $7 < 1 }
+        END { exit !good }'
+verdict $? "and pass more" "$(lens report coated.csv -g glass.agf "${quick[@]}" --field 0 | grep ^transm)"
+
 # --- a missing stop: one rule, in one note
 wanted write '' && sed -i 's/ENPD.*/ENPD 20/' nostop.zmx
 lens nostop.zmx -g glass.agf >table 2>said

@@ -2,11 +2,11 @@
  *
  * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
  * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
- * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius; vdx, vdy,
- * vcx and vcy, vignetting factors with a number for each field. Columns: radius (0, empty or inf: flat), thickness,
- * medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, a1, a2, a3, a5 ... a15, form (round, biconic or
- * toric) with radius_x and conic_x, stop (any text but 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror
- * that folds the axis); all but radius and thickness may be missing. */
+ * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius; coating, of
+ * all faces of glass in air; vdx, vdy, vcx and vcy, vignetting factors with a number for each field. Columns: radius (0,
+ * empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, a1, a2, a3, a5 ...
+ * a15, form (round, biconic or toric) with radius_x and conic_x, stop (any text but 0), hole, name, tilt_x and tilt_y
+ * (degrees, of a flat mirror that folds the axis); all but radius and thickness may be missing. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -97,9 +97,10 @@ const char *const lens_column_words[LENS_COLUMNS] = {
     "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",  "a1",     "a2",       "a3",
     "a5",     "a7",        "a9",     "a11",      "a13",   "a15",  "form", "radius_x", "conic_x"};
 
-const char *const lens_key_words[LENS_KEYS] = {
-    "title",         "unit_mm",        "object_distance", "pupil", "f_number", "object_na", "field_deg", "field_height",
-    "wavelength_nm", "image_diameter", "image_radius",    "vdx",   "vdy",      "vcx",       "vcy"};
+const char *const lens_key_words[LENS_KEYS] = {"title",         "unit_mm",        "object_distance", "pupil",
+                                               "f_number",      "object_na",      "field_deg",       "field_height",
+                                               "wavelength_nm", "image_diameter", "image_radius",    "coating",
+                                               "vdx",           "vdy",            "vcx",             "vcy"};
 
 static int index_of(const char *word, const char *const *words, int count)
 {
@@ -168,6 +169,21 @@ static status read_aperture(const lens_reader *r, lens_aperture_kind kind)
     return STATUS_OK;
 }
 
+/* A name, or layers, whose commas divide the line. */
+static status read_coating(const lens_reader *r)
+{
+    char *to = r->p->coating;
+    size_t used = 0;
+    for (int i = 1; i < r->count; i++) {
+        const size_t room = sizeof r->p->coating - used;
+        const int length = snprintf(to + used, room, "%s%s", i > 1 ? "," : "", r->word[i]);
+        if (length < 0 || (size_t)length >= room)
+            return lens_wrong(r, i, "give a name of `cuvette media`", "the coating has more than 127 characters");
+        used += (size_t)length;
+    }
+    return STATUS_OK;
+}
+
 static status read_key(const lens_reader *r, int key)
 {
     lens_prescription *p = r->p;
@@ -192,6 +208,7 @@ static status read_key(const lens_reader *r, int key)
     case 8: return read_wavelengths(r);
     case 9: return read_positive(r, "image_diameter", &p->image_diameter);
     case 10: return lens_number(r, 1, "image_radius", &p->image_radius);
+    case 11: return read_coating(r);
     default: return lens_read_vignetting(r, (size_t)(key - LENS_SCENE_KEYS));
     }
 }

@@ -104,10 +104,11 @@ static double air_index(const scene *s)
     return !surrounding_medium_name(b) && b->ior == 1.0 ? 1.0 : medium_index(media_at(0), LINE_HELIUM_D_NM);
 }
 
-static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
+/* glass: the name of the material without a coating, by which the data are named. */
+static void add_data(lens_builder *b, const char *owner, const char *glass, const lens_medium *m)
 {
     object_name name;
-    snprintf(name, sizeof name, "%.60s-n", owner);
+    snprintf(name, sizeof name, "%.60s-n", glass);
     if (!lens_has(b->t.s, PARAM_DATA, name)) {
         THEN(b->t.code, scene_add(b->t.s, PARAM_DATA, name, NULL, b->t.why));
         const bool known = b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count;
@@ -123,10 +124,8 @@ static void add_data(lens_builder *b, const char *owner, const lens_medium *m)
     lens_put(&b->t, owner, "medium_data", "%s", name);
 }
 
-/* The name of the material of a medium; the scene's own material of that name has precedence. */
-void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name)
+static void add_glass(lens_builder *b, const lens_medium *m, const char *name, const char *glass)
 {
-    lens_material_name(m, name);
     if (lens_has(b->t.s, PARAM_MATERIAL, name))
         return;
     THEN(b->t.code, scene_add(b->t.s, PARAM_MATERIAL, name, NULL, b->t.why));
@@ -136,7 +135,7 @@ void lens_medium_material(lens_builder *b, const lens_medium *m, object_name nam
     switch (m->kind) {
     case LENS_AIR: break;
     case LENS_CATALOGUE: lens_put(&b->t, name, "medium", "%s", m->name); break;
-    case LENS_DATA: add_data(b, name, m); break;
+    case LENS_DATA: add_data(b, name, glass, m); break;
     case LENS_MODEL:
         lens_put(&b->t, name, "medium", "cauchy");
         snprintf(list, sizeof list, "[%s,%s]", number_format(m->law.law.coefficient[0] * air, A),
@@ -144,6 +143,30 @@ void lens_medium_material(lens_builder *b, const lens_medium *m, object_name nam
         lens_put(&b->t, name, "coefficients", "%s", list);
         break;
     case LENS_CONSTANT: lens_put_number(&b->t, name, "ior", m->n_d * air); break;
+    }
+}
+
+/* The name of the material of a medium; the scene's own material of that name has precedence. */
+void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name)
+{
+    lens_material_name(m, name);
+    add_glass(b, m, name, name);
+}
+
+void lens_coat(lens_builder *b, const lens_element *e)
+{
+    const lens_prescription *p = b->p;
+    for (int side = 0; side < 2 && p->coating[0]; side++) {
+        const size_t i = side ? e->back : e->front;
+        const lens_medium *before = i ? &p->surface[i - 1].medium : &p->object_medium, *after = &p->surface[i].medium;
+        object_name glass, name;
+        if (p->surface[i].mirror || !(lens_is_air(before) || lens_is_air(after)))
+            continue;
+        lens_material_name(e->medium, glass);
+        snprintf(name, sizeof name, "%.50s-coated", glass);
+        add_glass(b, e->medium, name, glass);
+        lens_put(&b->t, name, "coating", "%s", p->coating);
+        lens_put(&b->t, e->name, side ? "material_2" : "material_1", "%s", name);
     }
 }
 

@@ -111,6 +111,7 @@ typedef struct lens_prescription {
     lens_wavelength wavelength[LENS_LIST_MAX];
     size_t wavelength_count;  /* at least 1: 587.5618 nm */
     size_t primary;           /* index of the primary wavelength */
+    char coating[128];        /* of all faces of glass in air, as a material's coating; "": none */
     char note[LENS_NOTE_MAX]; /* what of the file was not read, or was assumed; "" for nothing */
     /* What a .zmx file holds that nothing here uses, for a writer of that format: lines "N TEXT", where N is the line
      * of their surface (lens_surface.line), 0 for the system, -1 after the surfaces. NULL: nothing. */
@@ -211,7 +212,7 @@ typedef struct lens_glasses {
 
 /* The columns and keys of .csv files (lens_files.c). */
 /* The last four keys are vignetting factors, which scenes do not hold. */
-enum { LENS_COLUMNS = 31, LENS_KEYS = 15, LENS_SCENE_KEYS = 11 };
+enum { LENS_COLUMNS = 31, LENS_KEYS = 16, LENS_SCENE_KEYS = 12 };
 extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
 
 /* Whether a path ends as such a file does. */

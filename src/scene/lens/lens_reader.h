@@ -203,6 +203,8 @@ void lens_part_name(const lens_builder *b, object_name name, const char *format,
 void lens_put_at(lens_builder *b, const char *name, const lens_leg *leg, double y);
 /* The name of the material of a medium; the scene's own material of that name has precedence. */
 void lens_medium_material(lens_builder *b, const lens_medium *m, object_name name);
+/* Coats the sides of an element that are in air, with the prescription's coating. */
+void lens_coat(lens_builder *b, const lens_element *e);
 /* The medium of a solid's material. */
 status lens_medium_of(const scene *s, const solid *of, lens_medium *out, diagnostic *why);
 /* The name of the material of mirrors. */

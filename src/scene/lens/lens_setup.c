@@ -109,6 +109,7 @@ static void add_object(setup *u)
         const double at = 0.25 * d, across = 0.32 * wide * at / d * (i - 2);
         lens_add_solid(t, "sphere", name);
         lens_put(t, name, "material", "lamp-glow");
+        lens_put(t, name, "visible", "off"); /* before the object, where they would hide a part of it */
         lens_put(t, name, "position", "%.6g,%.6g,%.6g", across, 0.25 * across, -at);
         lens_put_number(t, name, "radius", rounded(0.015 * wide * at / d, 3));
     }

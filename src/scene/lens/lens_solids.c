@@ -138,6 +138,7 @@ static void add_element(lens_builder *b, size_t i)
     put_side(b, e->name, 1, &p->surface[e->front]);
     put_side(b, e->name, 2, &p->surface[e->back]);
     lens_put(&b->t, e->name, "material_rim", "%s", lens_black(b));
+    lens_coat(b, e);
     choose_rim(b, e);
 }
 

@@ -71,6 +71,8 @@ static void put_system(const lens_prescription *p, FILE *out)
         put_number(out, "\nimage_radius,", p->image_radius);
     if (p->image_diameter > 0.0)
         put_number(out, "\nimage_diameter,", p->image_diameter);
+    if (p->coating[0])
+        fprintf(out, "\ncoating,%s", p->coating);
     fputc('\n', out);
 }
 
