@@ -207,7 +207,7 @@ static double cover_of(const fine_grid *g, int at, double *waves)
         return 0.0;
     const double down = 0.5 * (rho[at + m] - rho[at - m]), on = 0.5 * (rho[at + 1] - rho[at - 1]),
                  width = hypot(down, on);
-    if (!(width > 0.0)) /* beside what does not arrive */
+    if (!(width > 0.0)) /* next to what does not arrive */
         return rho[at] <= 1.0;
     const double cover = fmin(1.0, fmax(0.0, 0.5 + (1.0 - rho[at]) / width));
     const double slope = 0.5 * ((w[at + m] - w[at - m]) * down + (w[at + 1] - w[at - 1]) * on) / width;
