@@ -74,6 +74,32 @@ static void thin_pencils_through_the_solids_meet_the_paraxial_focus(void **state
     }
 }
 
+/* The skew ray that ray-optics lists for this lens ("Trace an arbitrary skew ray"), to its last digit. Two of its
+ * elements turn on both sides. */
+static void a_phone_lens_of_odd_aspheres_has_its_published_ray(void **state)
+{
+    (void)state;
+    lens_prescription p = read_lens(LENSES "phone-odd.csv");
+    scene *s = scene_of(&p, "phone-odd");
+    const vec3 d = vec3_normalize(vec3_make(0.086, 0.173, 0.981));
+    const lens_first_order f = lens_first_order_of(&p, 587.5618);
+    assert_near(f.efl, 5.555, 0.0005, "focal length");
+    assert_near(f.back, 0.5678, 0.00005, "back focal distance");
+    /* through (-d.x, -d.y, 0) */
+    const ray_node r = traced_from(s, &p, vec3_make(-2.0 * d.x, -2.0 * d.y, -d.z), d, "phone-odd");
+    double plane = 0.0;
+    for (size_t k = 0; k < p.count; k++)
+        plane += p.surface[k].thickness;
+    const double path = (plane - r.origin.z) / r.direction.z;
+    assert_near(path, 0.66763, 6e-6, "path");
+    assert_near(r.direction.x, 0.126731, 6e-7, "x");
+    assert_near(r.direction.y, 0.254936, 6e-7, "y");
+    assert_near(r.origin.x + path * r.direction.x, 0.49241, 6e-6, "image x");
+    assert_near(r.origin.y + path * r.direction.y, 0.99054, 6e-6, "image y");
+    scene_destroy(s);
+    lens_prescription_release(&p);
+}
+
 /* A Ritchey-Chretien telescope has no spherical aberration: rays from the primary's middle and rim meet at its focus.
  * They pass the hole that is cut by a solid of air. */
 static void the_space_telescope_is_free_of_spherical_aberration(void **state)
@@ -376,6 +402,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(published_values_are_those_of_the_files),
         cmocka_unit_test(thin_pencils_through_the_solids_meet_the_paraxial_focus),
+        cmocka_unit_test(a_phone_lens_of_odd_aspheres_has_its_published_ray),
         cmocka_unit_test(the_space_telescope_is_free_of_spherical_aberration),
         cmocka_unit_test(formats_hold_what_they_are_given),
         cmocka_unit_test(all_types_of_surfaces_are_held),

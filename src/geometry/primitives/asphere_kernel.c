@@ -1,7 +1,7 @@
-/* A lens with a side that is an asphere, biconic or toric (asphere.h), is smaller than the rim, or ends in a bevel: x^2 +
- * z^2 <= radius^2 between two sides, each of which is such a surface or a conic up to a clear radius, and a level ring
- * beyond it; within the half cones of the bevels. Faces: 0 rim, 1 the side at 0, 2 the side at top, 3 and 4 the rings
- * around them, 5 and 6 the bevels.
+/* A lens with a side that is an asphere, biconic or toric (asphere.h), is smaller than the rim, or ends in a bevel:
+ * x^2 + z^2 <= radius^2 between two sides, each of which is such a surface or a conic up to a clear radius, and a level
+ * ring beyond it; within the half cones of the bevels. Faces: 0 rim, 1 the side at 0, 2 the side at top, 3 and 4 the
+ * rings around them, 5 and 6 the bevels.
  *
  * Along a line o + t d, f(t) is the height above side 1, or below side 2: positive within the lens. Its second
  * derivative is bounded by asphere_bend or asphere_curve. On an interval of half width h about m with |f''| <= K:

@@ -185,7 +185,7 @@ static inline bool lens_contains(const primitive *p, vec3 q)
            q.y >= lens_height(p, 0, q.x, q.z) && q.y <= lens_height(p, 1, q.x, q.z);
 }
 
-/* The height at which the rim and its bevel end: the outermost one if it is not the same all around. */
+/* The height at which the rim with its bevel ends: the outermost one if it is not the same all around. */
 static inline double lens_rim_end(const primitive *p, int k)
 {
     const lens_details *d = p->details;

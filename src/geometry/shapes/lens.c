@@ -138,8 +138,9 @@ static status check_chamfers(const solid_shape *s, diagnostic *why)
         return STATUS_OK;
     for (int k = 0; k < 2; k++)
         if (lens_profile_of(s, k).twisted)
-            return diagnose(why, STATUS_BAD_INPUT, "set chamfer_1 and chamfer_2 to 0, or the form to round",
-                            "side %d is not round: its edge is not level, and the rim can have no bevel", k + 1);
+            return diagnose(why, STATUS_BAD_INPUT,
+                            "set chamfer_1 and chamfer_2 to 0, or the form of that side to round",
+                            "side %d is not round: its edge is not level, and has no bevel", k + 1);
     for (int k = 0; k < 2; k++)
         TRY(check_chamfer(s, k, why));
     double at;
@@ -212,11 +213,12 @@ static status check(const solid_shape *s, diagnostic *why)
 static bool contains(const solid_shape *s, vec3 p)
 {
     const lens_profile one = lens_profile_of(s, 0), two = lens_profile_of(s, 1);
-    const double rho = sqrt(p.x * p.x + p.z * p.z);
     for (int k = 0; k < 2; k++)
-        if (lens_chamfer(s, k) > 0.0 && rho > lens_end(s, k) + (k == 0 ? 1.0 : -1.0) * (p.y - lens_edge(s, k)))
+        if (lens_chamfer(s, k) > 0.0 &&
+            sqrt(p.x * p.x + p.z * p.z) > lens_end(s, k) + (k == 0 ? 1.0 : -1.0) * (p.y - lens_edge(s, k)))
             return false;
-    return rho <= lens_rim(s) && p.y >= lens_height_over(&one, p.x, p.z) && p.y <= lens_height_over(&two, p.x, p.z);
+    return sqrt(p.x * p.x + p.z * p.z) <= lens_rim(s) && p.y >= lens_height_over(&one, p.x, p.z) &&
+           p.y <= lens_height_over(&two, p.x, p.z);
 }
 
 static double lowest(const solid_shape *s)
@@ -241,13 +243,13 @@ static size_t details(const solid_shape *s, void *out)
         d->low[k] = lens_lowest_of(&whole, k) - side[k].vertex;
         d->high[k] = lens_highest_of(&whole, k) - side[k].vertex;
         d->clear[k] = side[k].clear;
+        d->bevel[k] = lens_chamfer(s, k) > 0.0 ? lens_end(s, k) : HUGE_VAL;
+        d->apex[k] = lens_edge(s, k) - (k == 0 ? 1.0 : -1.0) * lens_end(s, k);
         d->general[k] = side[k].twisted || side[k].e.odd_terms > 0;
         for (int i = 0; i < ASPHERE_ODD; i++)
             d->odd[k][i] = side[k].e.odd[i];
         d->form[k] = side[k].e.form, d->curvature_x[k] = side[k].e.curvature_x;
         d->conic_x[k] = k == 0 ? s->conic_1_x : s->conic_2_x;
-        d->bevel[k] = lens_chamfer(s, k) > 0.0 ? lens_end(s, k) : HUGE_VAL;
-        d->apex[k] = lens_edge(s, k) - (k == 0 ? 1.0 : -1.0) * lens_end(s, k);
     }
     bool more = false;
     for (int k = 0; k < 2; k++)
@@ -331,7 +333,9 @@ static double thickness(const solid_shape *s)
 {
     double at;
     const double gap = lens_least_gap(s, &at);
-    return fmax(0.0, s->chamfer_1 + s->chamfer_2 > 0.0 ? fmin(gap, least_edge(s, &at)) : gap);
+    if (s->chamfer_1 == 0.0 && s->chamfer_2 == 0.0)
+        return fmax(0.0, gap);
+    return fmax(0.0, fmin(gap, least_edge(s, &at)));
 }
 
 /* A biconvex lens. */
@@ -379,20 +383,21 @@ static int rings(const solid_shape *s, shape_ring *out)
     return count;
 }
 
-/* The profile of side k from the axis to the rim: the side, its ring, and its bevel. level: at the height k instead. */
-static size_t profile_of(const solid_shape *s, int k, bool level, profile_point *out)
+/* The profile of side k from the axis to the rim: the side, its ring, and its bevel; level at the height k if one of the
+ * sides is not round (twisted). */
+static size_t profile_of(const solid_shape *s, int k, bool twisted, profile_point *out)
 {
     const lens_profile e = lens_profile_of(s, k);
-    const int steps = lens_is_flat(&e) && !level ? 1 : ARC_STEPS;
+    const int steps = lens_is_flat(&e) && !twisted ? 1 : ARC_STEPS;
     size_t count = 0;
     for (int i = 0; i <= steps; i++) {
         double sine, cosine;
         elementary_sincos_deg(90.0 * i / steps, &sine, &cosine);
         const double rho = lens_seen_of(s, k) * sine;
-        out[count++] = (profile_point){rho, level ? k : lens_height_at(&e, rho)};
+        out[count++] = (profile_point){rho, twisted ? k : lens_height_at(&e, rho)};
     }
     if (lens_has_ring(&e) && lens_end(s, k) > lens_seen_of(s, k))
-        out[count++] = (profile_point){lens_end(s, k), level ? k : lens_edge(s, k)};
+        out[count++] = (profile_point){lens_end(s, k), twisted ? k : lens_edge(s, k)};
     if (lens_chamfer(s, k) > 0.0)
         out[count++] = (profile_point){lens_rim(s), lens_rim_edge(s, k)};
     return count;
@@ -425,13 +430,13 @@ const shape_rule shape_lens = {
         "the centre lies above the side, 0 for a flat one; with a1_1 to a20_2 aspheres, with form_1 or form_2 biconic "
         "or toric; a side with a smaller diameter_1 or diameter_2 of its own ends in a level ring; chamfer_1 and "
         "chamfer_2 cut the edges of the rim at 45 degrees; the sides do not cross within the rim",
-    .parameters = WORDS("radius_1", "radius_2", "thickness", "diameter", "diameter_1", "diameter_2", "chamfer_1",
-                        "chamfer_2", "conic_1", "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1",
-                        "a18_1", "a20_1", "a4_2", "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2",
-                        "a1_1", "a2_1", "a3_1", "a5_1", "a7_1", "a9_1", "a11_1", "a13_1", "a15_1", "a1_2", "a2_2",
-                        "a3_2", "a5_2", "a7_2", "a9_2", "a11_2", "a13_2", "a15_2", "form_1", "form_2", "radius_1_x",
-                        "radius_2_x", "conic_1_x", "conic_2_x", "material_1", "material_2", "material_rim", "points",
-                        "scale"),
+    .parameters =
+        WORDS("radius_1", "radius_2", "thickness", "diameter", "diameter_1", "diameter_2", "chamfer_1", "chamfer_2",
+              "conic_1", "conic_2", "a4_1", "a6_1", "a8_1", "a10_1", "a12_1", "a14_1", "a16_1", "a18_1", "a20_1",
+              "a4_2", "a6_2", "a8_2", "a10_2", "a12_2", "a14_2", "a16_2", "a18_2", "a20_2", "a1_1", "a2_1", "a3_1",
+              "a5_1", "a7_1", "a9_1", "a11_1", "a13_1", "a15_1", "a1_2", "a2_2", "a3_2", "a5_2", "a7_2", "a9_2",
+              "a11_2", "a13_2", "a15_2", "form_1", "form_2", "radius_1_x", "radius_2_x", "conic_1_x", "conic_2_x",
+              "material_1", "material_2", "material_rim", "points", "scale"),
     .curved = true,
     .check = check,
     .contains = contains,

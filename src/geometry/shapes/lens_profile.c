@@ -193,13 +193,16 @@ static asphere_range range_of(double conic_from, double conic_to, int terms, con
 }
 
 /* Which sum of a side's terms, and for a rho^n its factors of a and what is less than n in the power of rho. */
-enum { SUM_P, SUM_G, SUM_TURN, SUM_BEND };
+enum { SUM_P, SUM_G, SUM_TURN, SUM_NEXT, SUM_BEND };
 
 static double term_factor(int sum, double n)
 {
-    return sum == SUM_P   ? n / 2.0
-           : sum == SUM_G ? n * (n - 2.0) / 4.0
-                          : (sum == SUM_TURN ? n * (n - 2.0) * (n - 4.0) / 8.0 : n * (n - 1.0) / 2.0);
+    double factor = n / 2.0;
+    if (sum == SUM_BEND)
+        return n * (n - 1.0) / 2.0;
+    for (int i = SUM_G; i <= sum; i++)
+        factor *= (n - 2.0 * i) / 2.0;
+    return factor;
 }
 
 static double power_of(double rho, int n)
@@ -215,7 +218,7 @@ static double power_of(double rho, int n)
 static asphere_range range_with_odd(const even_asphere *e, int sum, double conic_from, double conic_to, bool sign,
                                     double from, double to)
 {
-    asphere_range r = {fmin(conic_from, conic_to), fmax(conic_from, conic_to)};
+    const asphere_range r = {fmin(conic_from, conic_to), fmax(conic_from, conic_to)};
     double k[2 * ASPHERE_TERMS + 3] = {0.0};
     for (int i = 0; i < ASPHERE_ODD; i++)
         k[asphere_odd_power(i)] = e->odd[i];
@@ -224,15 +227,25 @@ static asphere_range range_with_odd(const even_asphere *e, int sum, double conic
     int lowest = 1;
     while (k[lowest] == 0.0)
         lowest++;
-    const int less = sign && e->curvature == 0.0 ? lowest : sum == SUM_G ? 4 : sum == SUM_TURN ? 6 : 2;
+    const int less = sign && e->curvature == 0.0 ? lowest : sum == SUM_BEND ? 2 : 2 + 2 * sum;
+    asphere_range all = r, rise = {0.0, 0.0};
+    double value = 0.0;
     for (int n = 1; n < 2 * ASPHERE_TERMS + 3; n++) {
-        const double factor = k[n] * term_factor(sum, n);
+        const double factor = k[n] * term_factor(sum, n), by_q = 0.5 * factor * (n - less);
         if (factor == 0.0)
             continue;
         const double one = factor * power_of(sqrt(from), n - less), two = factor * power_of(sqrt(to), n - less);
-        r.low += fmin(one, two), r.high += fmax(one, two);
+        all.low += fmin(one, two), all.high += fmax(one, two);
+        value += factor * power_of(sqrt(0.5 * (from + to)), n - less);
+        if (by_q == 0.0)
+            continue;
+        const double a = by_q * power_of(sqrt(from), n - less - 2), b = by_q * power_of(sqrt(to), n - less - 2);
+        rise.low += fmin(a, b), rise.high += fmax(a, b);
     }
-    return r;
+    const double spread = 0.5 * (to - from) * fmax(fabs(rise.low), fabs(rise.high)); /* as in range_of */
+    if (!isfinite(spread))
+        return all;
+    return (asphere_range){fmax(all.low, r.low + (value - spread)), fmin(all.high, r.high + (value + spread))};
 }
 
 /* An interval that contains the sum conic / w^power + k0 + k1 q + ... If the side has no curvature, the sum is divided
@@ -253,24 +266,10 @@ static asphere_range sign_of(const even_asphere *e, int sum, double conic, int p
     return range_of(a, b, e->terms, shifted, from, to);
 }
 
-static asphere_range product(asphere_range a, asphere_range b)
-{
-    const double corner[4] = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
-    return (asphere_range){fmin(fmin(corner[0], corner[1]), fmin(corner[2], corner[3])),
-                           fmax(fmax(corner[0], corner[1]), fmax(corner[2], corner[3]))};
-}
-
 /* 1 or -1: times a - b has that sign in its whole range; 0: unknown. */
 static int sign_of_difference(double times, asphere_range a, asphere_range b)
 {
     return times * a.low - b.high >= 0.0 ? 1 : times * a.high - b.low <= 0.0 ? -1 : 0;
-}
-
-static asphere_range sum_range(const even_asphere *e, int sum, double conic_from, double conic_to, int count,
-                               const double *k, double from, double to)
-{
-    return e->odd_terms > 0 ? range_with_odd(e, sum, conic_from, conic_to, false, from, to)
-                            : range_of(conic_from, conic_to, count, k, from, to);
 }
 
 /* The sign of T, or that of dT/dq if T may change it; 0: unknown. */
@@ -283,16 +282,23 @@ static form_turning turning_of(const even_asphere *e, const form_terms *k, doubl
     const double a = 1.0 / asphere_root(e, from), b = 1.0 / asphere_root(e, to), c = e->curvature;
     const double a2 = a * a, b2 = b * b, bend = e->stretch * c * c;
     const double c3 = 0.25 * bend * c, c5 = 1.5 * bend * c3, c7 = 2.5 * bend * c5;
-    const asphere_range p = sum_range(e, SUM_P, 0.5 * c * a, 0.5 * c * b, k->count, k->p, from, to),
-                        g = sum_range(e, SUM_G, c3 * a2 * a, c3 * b2 * b, k->count, k->g, from, to),
-                        d = sum_range(e, SUM_TURN, c5 * a2 * a2 * a, c5 * b2 * b2 * b, k->count, k->turn, from, to);
-    asphere_range g2 = product(g, g);
-    g2.low = fmax(g2.low, 0.0);
-    const int sign = sign_of_difference(3.0, g2, product(p, d));
-    if (sign != 0 || e->odd_terms > 0) /* of odd terms, how T changes is not followed */
-        return (form_turning){sign, 0};
-    const asphere_range n = range_of(c7 * a2 * a2 * a2 * a, c7 * b2 * b2 * b2 * b, k->count, k->next, from, to);
-    return (form_turning){0, sign_of_difference(5.0, product(g, d), product(p, n))};
+    const double ends[4][2] = {{0.5 * c * a, 0.5 * c * b},
+                               {c3 * a2 * a, c3 * b2 * b},
+                               {c5 * a2 * a2 * a, c5 * b2 * b2 * b},
+                               {c7 * a2 * a2 * a2 * a, c7 * b2 * b2 * b2 * b}};
+    const double *const terms[4] = {k->p, k->g, k->turn, k->next};
+    asphere_range of[4];
+    for (int i = 0; i < 4; i++) {
+        of[i] = e->odd_terms ? range_with_odd(e, i, ends[i][0], ends[i][1], false, from, to)
+                             : range_of(ends[i][0], ends[i][1], k->count, terms[i], from, to);
+        if (i != SUM_TURN)
+            continue;
+        const int sign = sign_of_difference(3.0, asphere_square(of[SUM_G]), asphere_times(of[SUM_P], of[SUM_TURN]));
+        if (sign != 0)
+            return (form_turning){sign, 0};
+    }
+    return (form_turning){
+        0, sign_of_difference(5.0, asphere_times(of[SUM_G], of[SUM_TURN]), asphere_times(of[SUM_P], of[SUM_NEXT]))};
 }
 
 /* What is known about a side from the axis up to a radius. */

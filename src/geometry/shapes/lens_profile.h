@@ -56,7 +56,7 @@ double lens_seen_of(const solid_shape *s, int k);
 /* The height at lens_end, and that of the rim's edge. */
 double lens_edge(const solid_shape *s, int k);
 double lens_rim_edge(const solid_shape *s, int k);
-/* The distance between round sides at a radius, and the radius where they are nearest to each other. */
+/* The distance between the sides at a radius, and the radius where they are nearest to each other. */
 double lens_gap_at(const solid_shape *s, double rho);
 double lens_nearest_sides(const solid_shape *s);
 /* The least distance between sides of any form, and the radius where that is. */
@@ -92,6 +92,9 @@ typedef enum lens_form {
 /* The form of a side without its ring. A flat side is convex. within: the radius up to which a side with coefficients
  * is not steep, and turns no more than the kernels can bound. */
 lens_form lens_form_of(const solid_shape *s, int k, double *within);
+
+/* The most intervals of a line in the lens, from the forms of its sides. */
+int lens_chords_of(const solid_shape *s, const lens_form form[2]);
 /* The same for a side's curve along z, as a round side. */
 lens_form lens_round_form(const solid_shape *s, int k, double *within);
 
@@ -99,6 +102,3 @@ lens_form lens_round_form(const solid_shape *s, int k, double *within);
 int lens_twisted_rings(const solid_shape *s, int k, int piece, shape_ring *out);
 /* Moves the triangles of a disc with levels at 0 and 1, whose rim has the lens's radius, to the lens. */
 status lens_twist_mesh(const solid_shape *s, mesh *m, diagnostic *why);
-
-/* The most intervals of a line in the lens, from the forms of its sides. */
-int lens_chords_of(const solid_shape *s, const lens_form form[2]);
