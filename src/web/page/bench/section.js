@@ -44,6 +44,7 @@ const AXIS_OF = { top: 1, front: 2, side: 0 };
 const MARGIN = 0.3; /* beyond the window, for pans */
 const CELLS = { moving: 160, resting: 420 };
 const REST_MS = 180;
+const RETRY_MS = 2000; /* after an error */
 const ZOOM = 1.25;
 const HITS_MAX = 150; /* that have a mark */
 const ANGLES_MAX = 40; /* hits with angles at once */
@@ -309,7 +310,8 @@ export function createSection(lab) {
       }
     } catch (error) {
       if (error.status) note([error.message, error.remedy].filter(Boolean).join(' – '));
-      section.drawn = generation;
+      asked = '';
+      resting = setTimeout(ask, RETRY_MS);
     }
     bar.show();
     later();
