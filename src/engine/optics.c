@@ -1,8 +1,8 @@
 /* Optics against theory: the metrics and curves of a scene; reports on its lenses. */
 #include "engine/engine_private.h"
+#include "lens/lens.h"
 #include "realism/realism.h"
 #include "report/param_rows.h"
-#include "lens/lens.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

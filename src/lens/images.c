@@ -272,9 +272,10 @@ static void pencil_foci(const lens_model *m, const lens_beam *bundle, double *t,
         const double rho = hypot(at.x, at.y);
         lens_sag(f, rho, &slope, &bend);
         const double root = sqrt(1.0 + slope * slope), kt = bend / (root * root * root);
-        const double ks = f->shape.form != SIDE_ROUND ? lens_bend_across(f, rho) / root /* the ray is in the plane of Y */
-                          : rho > 1e-12           ? slope / (rho * root)
-                                                  : f->c0;
+        const double ks = f->shape.form != SIDE_ROUND
+                              ? lens_bend_across(f, rho) / root /* the ray is in the plane of Y */
+                          : rho > 1e-12 ? slope / (rho * root)
+                                        : f->c0;
         const vec3 up = vec3_make(rho > 0.0 ? -slope * at.x / rho : 0.0, rho > 0.0 ? -slope * at.y / rho : 0.0, 1.0);
         const double ci = vec3_dot(r->along[i], up) / root, ci2 = vec3_dot(r->along[i + 1], up) / root;
         const double n2 = fabs(f->n_after), power = n2 * ci2 - n * ci;

@@ -5,10 +5,10 @@
 #include "base/number.h"
 #include "job/account.h"
 #include "measure/statistics.h"
+#include "measure/usage.h"
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "scene/model/scene.h"
-#include "measure/usage.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "base/cancel.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* HLW: Hairer, Lubich, Wanner, "Geometric numerical integration", 2nd edition. */
 static const struct {

@@ -65,7 +65,10 @@ lens report gauss.zmx -g glass.agf --spot 8 --fan 4 --field 0 --csv >full.rows
 awk -F, 'NR == FNR { split($0, a, " "); of[a[1]] = a[2]; next }
     $1 == "wavefront" && $6 == "strehl_diffraction" && $4 > 500 { k = sprintf("%.4f", $4); worse += ($7 / of[k] - 1) ^ 2 > 4e-6; n++ }
     END { exit n != 2 || worse }' <(wanted strehl) full.rows
-verdict $? "Strehl ratios are those of an integral along the radius" "$(wanted strehl; grep strehl_diff full.rows)"
+verdict $? "Strehl ratios are those of an integral along the radius" "$(
+    wanted strehl
+    grep strehl_diff full.rows
+)"
 
 # --- transmission: at full aperture of a slow lens close to that of the axis
 sed 's/^pupil.*/pupil,0.2/' gauss.csv >slow.csv
@@ -80,7 +83,10 @@ equal "and media what Beer's law does" \
 equal "the illuminance of field 1 is 1" "$(awk -F, '$1 == "illumination" && $6 == "relative" { print $7 }' slow.rows)" 1
 
 # --- a coating of all faces in air: the cemented ones, nearly without reflection, have none
-(echo coating,ar-broad; cat slow.csv) >coated.csv
+(
+    echo coating,ar-broad
+    cat slow.csv
+) >coated.csv
 lens coated.csv -g glass.agf -o coated.yaml >/dev/null
 equal "eight faces are coated" "$(grep -cE 'material_[12]: .*-coated' coated.yaml)" 8
 lens report coated.csv -g glass.agf "${quick[@]}" --field 0 |

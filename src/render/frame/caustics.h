@@ -11,8 +11,8 @@
 
 #include "base/counters.h"
 #include "base/isa.h"
-#include "render/plan/schedule.h"
 #include "render/plan/plan.h"
+#include "render/plan/schedule.h"
 
 typedef struct caustics caustics;
 

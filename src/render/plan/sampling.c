@@ -2,9 +2,9 @@
  * pattern over a disc or cone. */
 #include "render/plan/sampling.h"
 
-#include "render/plan/film.h"
 #include "base/elementary.h"
 #include "base/random.h"
+#include "render/plan/film.h"
 
 /* Replicates under sobol. */
 enum { SOBOL_REPLICATES = 4, SPECTRAL_REPLICATE_MIN = 8 };

@@ -5,9 +5,9 @@
  *
  * Instead of the file, `surfaces` may give a list of maps with the columns of a .csv lens file, next to the keys of
  * such a file (f_number, field_deg, ...). They become the text of such a file, so that there is one reader. */
-#include "scene/file/document.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "scene/file/document.h"
 #include "scene/lens/lens_prescription.h"
 #include "scene/model/scene.h"
 

@@ -93,14 +93,26 @@ typedef enum lens_column {
     COLUMN_CONIC_X
 } lens_column;
 const char *const lens_column_words[LENS_COLUMNS] = {
-    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name", "tilt_x", "tilt_y",   "a4",
-    "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",  "a1",     "a2",       "a3",
+    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name",     "tilt_x", "tilt_y", "a4",
+    "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",      "a1",     "a2",     "a3",
     "a5",     "a7",        "a9",     "a11",      "a13",   "a15",  "form", "radius_x", "conic_x"};
 
-const char *const lens_key_words[LENS_KEYS] = {"title",         "unit_mm",        "object_distance", "pupil",
-                                               "f_number",      "object_na",      "field_deg",       "field_height",
-                                               "wavelength_nm", "image_diameter", "image_radius",    "coating",
-                                               "vdx",           "vdy",            "vcx",             "vcy"};
+const char *const lens_key_words[LENS_KEYS] = {"title",
+                                               "unit_mm",
+                                               "object_distance",
+                                               "pupil",
+                                               "f_number",
+                                               "object_na",
+                                               "field_deg",
+                                               "field_height",
+                                               "wavelength_nm",
+                                               "image_diameter",
+                                               "image_radius",
+                                               "coating",
+                                               "vdx",
+                                               "vdy",
+                                               "vcx",
+                                               "vcy"};
 
 static int index_of(const char *word, const char *const *words, int count)
 {

@@ -6,12 +6,12 @@
 #include "base/status.h"
 #include "base/text.h"
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <math.h>
 
 status plot_figure_write(plot_plan *p, const char *base, diagnostic *why)
 {
