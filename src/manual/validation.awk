@@ -70,5 +70,5 @@ FNR == 1 {
 }
 END {
     print ".SS Summary\n" passed " of " total " cases are within their tolerances."
-    print "There are " limits " limits besides, where nature differs from rays, and the program from nature."
+    print "There are " limits " further cases, limits of rays, where nature differs from the program."
 }

@@ -1,6 +1,6 @@
-/* Writers of a ray tree, as text, JSON, CSV and a drawing; of the ray trees of a scene's beams; of the light that beams
- * cast on a screen; and of a section of the solids. cuvette-trace(1) documents the formats. Errors of the stream stay in
- * the stream, where the caller checks them. Ownership: everything is borrowed. */
+/* Writers of a ray tree, as text, JSON, CSV and a drawing; of the ray trees of a scene's beams; of the light that
+ * beams cast on a screen; and of a section of the solids. cuvette-trace(1) documents the formats. Errors of the
+ * stream stay in the stream, where the caller checks them. Ownership: everything is borrowed. */
 #pragma once
 
 #include "render/inspect/beams.h"

@@ -727,7 +727,8 @@ check "each row goes to the next: length times direction" is "$(awk -F, 'NR > 1 
     END { print (n > 3), off + 0 }' beams.csv)" "1 0"
 run trace "$scene" --pixel 40,30 --depth 2 --csv "${small[@]}"
 check "trace --csv names no beam for a pixel" matches "$(sed -n 2p out)" '^NA,NA,NA,587\.[0-9]+,NA,0,NA,camera,0,'
-check "a shadow ray's row ends at its light" matches "$(grep -m1 ',shadow,' out)" ',(lit|blocked),[a-z_0-9]+,NA,[0-9.]+,NA'
+check "a shadow ray's row ends at its light" matches "$(grep -m1 ',shadow,' out)" \
+    ',(lit|blocked),[a-z_0-9]+,NA,[0-9.]+,NA'
 run trace beams.yaml --beams --min-weight 0.1
 check "beams have their own least fraction" matches "$(<err)" \
     "--min-weight does not act on beams; use --set BEAM.min_fraction=VALUE"

@@ -383,8 +383,8 @@ static int rings(const solid_shape *s, shape_ring *out)
     return count;
 }
 
-/* The profile of side k from the axis to the rim: the side, its ring, and its bevel; level at the height k if one of the
- * sides is not round (twisted). */
+/* The profile of side k from the axis to the rim: the side, its ring, and its bevel; level at the height k if one
+ * of the sides is not round (twisted). */
 static size_t profile_of(const solid_shape *s, int k, bool twisted, profile_point *out)
 {
     const lens_profile e = lens_profile_of(s, k);

@@ -73,9 +73,9 @@ status lens_twisted_check(const solid_shape *s, int k, diagnostic *why)
 }
 
 /* Biconic: h (1 + w) = P is |y|^2 / tau for linear y and concave tau if 1 + k and 1 + K are not negative, which is
- * convex (Boyd and Vandenberghe, Convex Optimization, 3.2.6). Otherwise its polynomial P^2 - 2 P h + Q h^2 and that of a
- * conic turned about a line are of degree 4: a line crosses the side at most four times. A curve that bends as it is
- * turned is convex in all directions. */
+ * convex (Boyd and Vandenberghe, Convex Optimization, 3.2.6). Otherwise its polynomial P^2 - 2 P h + Q h^2 and
+ * that of a conic turned about a line are of degree 4: a line crosses the side at most four times. A curve that
+ * bends as it is turned is convex in all directions. */
 static lens_form twisted_form(const solid_shape *s, int k)
 {
     const even_asphere e = lens_profile_of(s, k).e;

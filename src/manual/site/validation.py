@@ -25,8 +25,8 @@ def page(root, source):
     figures = ''.join(f'<figure><img src="{up}{ROWS.rpartition("/")[0]}/{name}" alt="{re.sub("<[^>]*>", "", text)}">'
                       f'<figcaption>{text}</figcaption></figure>\n' for name, text in FIGURES)
     tables = ''.join(table(root, kind, [row for row in rows if row['kind'] == kind], up) for kind in kinds)
-    summary = (f'<p>{passed} of {len(rows) - limits} cases are within their tolerances. There are {limits} limits besides, '
-               f'where nature differs from rays, and the program from nature. The rows are in '
+    summary = (f'<p>{passed} of {len(rows) - limits} cases are within their tolerances. There are {limits} further '
+               f'cases, limits of rays, where nature differs from the program. The rows are in '
                f'<a href="{up}{ROWS}">{ROWS}</a>.</p>\n')
     made.body = re.sub(r'(<h2 class="Sh" id="CASES">.*?</h2>\n).*?</section>',
                        lambda match: match[1] + summary + figures + tables + '</section>', made.body, flags=re.S)
@@ -50,7 +50,8 @@ def table(root, kind, rows, up):
     limits = all(row['nature'] for row in rows)
     heads = ['nature', 'the program', 'off by', 'by rays'] if limits else ['expected', 'ours', 'deviation', 'tolerance']
     text = [f'<h3 id="{kind}">{escape(title)}</h3>\n<p>{escape(about)} The formulas are in <a href="{up}experiments/'
-            f'validation/{kind}.cases">{kind}.cases</a>.</p>\n<table class="cases">\n<thead><tr><th>what, and source</th>'
+            f'validation/{kind}.cases">{kind}.cases</a>.</p>\n<table class="cases">\n'
+            '<thead><tr><th>what, and source</th>'
             + ''.join(f'<th>{name}</th>' for name in heads) + '</tr></thead>\n<tbody>\n']
     for row in rows:
         ours = value(row, 'ours') if row['ours'] else 'no value'

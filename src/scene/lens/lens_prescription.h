@@ -265,13 +265,14 @@ status lens_add_to_scene(scene *s, const lens_prescription *p, const lens_placem
  * reads them back) and a screen, both not visible. Lengths are in the prescription's unit. */
 status lens_scene_create(const lens_prescription *p, const lens_glasses *glasses, scene **out, diagnostic *why);
 
-/* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or "":
- * all of the scene) must have one common axis, in the order of their positions along it; with mirrors, they are in the
- * order of the light, along the axis as mirrors fold it, and lenses that it meets again count again. The stop is the cup
- * NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the image is at the solid that
- * ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is from render.unit_m. The scene's data
- * must be loaded (scene_load) for media of files. Fields, wavelengths, the distance of a near object and the aperture
- * are those of its beams named NAME-field-..., whose power is the weight of their wavelength, the first being the
- * primary one; without beams they are the axis, render.lambda_nm, a far object and the stop. *at, unless at is NULL: the
- * frame of the system, and as its name that of the solid of its stop, NULL for none, borrowed. */
+/* Reads a system back from the solids of a scene: all solids of shape lens whose names begin with `name` (NULL or
+ * "": all of the scene) must have one common axis, in the order of their positions along it; with mirrors, they
+ * are in the order of the light, along the axis as mirrors fold it, and lenses that it meets again count again.
+ * The stop is the cup NAME-stop, or any cup with floor 0 on the axis that is named stop or ends in -stop; the
+ * image is at the solid that ends in -screen, or at the paraxial focus. Lengths are in scene units; unit_mm is
+ * from render.unit_m. The scene's data must be loaded (scene_load) for media of files. Fields, wavelengths, the
+ * distance of a near object and the aperture are those of its beams named NAME-field-..., whose power is the
+ * weight of their wavelength, the first being the primary one; without beams they are the axis, render.lambda_nm,
+ * a far object and the stop. *at, unless at is NULL: the frame of the system, and as its name that of the solid of
+ * its stop, NULL for none, borrowed. */
 status lens_of_scene(const scene *s, const char *name, lens_prescription *out, lens_placement *at, diagnostic *why);

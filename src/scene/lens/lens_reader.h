@@ -213,8 +213,8 @@ const char *lens_mirror_material(lens_builder *b);
 void lens_add_hole(lens_builder *b, const lens_element *e, double hole);
 /* The name of a black opaque material for stops and mounts. */
 const char *lens_black(lens_builder *b);
-/* The height of a surface at a radius, within its diameter, and at an angle from y to x, 0 to 90 degrees, which counts if
- * it is not round. */
+/* The height of a surface at a radius, within its diameter, and at an angle from y to x, 0 to 90 degrees, which
+ * counts if it is not round. */
 double lens_side_height_at(const lens_builder *b, size_t surface, double rho, double deg);
 /* The higher or the lower one of those in both meridians. */
 double lens_side_height(const lens_builder *b, size_t surface, double rho, bool highest);

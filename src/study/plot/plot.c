@@ -1,5 +1,5 @@
-/* Figures of a study: the steps from the summary to a script, and gnuplot; the kind of figure, and which parameters become
- * the x axis, lines and panels. */
+/* Figures of a study: the steps from the summary to a script, and gnuplot; the kind of figure, and which
+ * parameters become the x axis, lines and panels. */
 #include "study/plot/plot.h"
 #include "base/file.h"
 #include "base/os_process.h"

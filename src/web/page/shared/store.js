@@ -14,7 +14,8 @@
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, image (a pass is displayed), pass (a pass is available),
  *                                       slime, study, video, connection, restarted (a new server: all earlier data is
- *                                       void), opened ({file, link, lesson, new}: another scene), view (the image's placement changed), tool, panel (one was selected)
+ *                                       void), opened ({file, link, lesson, new}: another scene), view (the image's
+ *                                       placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
  *   lab.param(path)                     the row of that parameter; undefined if there is none
  *   lab.object(name)                    the object of that name; undefined if there is none
