@@ -5,7 +5,7 @@
 #include "cli/terminal.h"
 #include "report/json.h"
 #include "report/param_rows.h"
-#include "scene/assets/optical_files.h"
+#include "scene/data/optical_files.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

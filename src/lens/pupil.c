@@ -193,9 +193,10 @@ typedef struct fine_grid {
     double *rho, *waves;
 } fine_grid;
 
-/* The part c of a cell within the stop, whose edge is straight there. The middle of that part lies (1 - c) / 2 of a cell
- * inwards, which changes an integral of f by -h^2 f' / 12 for edges that are anywhere in their cells; half of it is what
- * midpoints of whole cells miss, h^2 f' / 24 (Euler and Maclaurin). So the wavefront moves by the half. */
+/* The part c of a cell within the stop, whose edge is straight there. The middle of that part lies (1 - c) / 2 of
+ * a cell inwards, which changes an integral of f by -h^2 f' / 12 for edges that are anywhere in their cells; half
+ * of it is what midpoints of whole cells miss, h^2 f' / 24 (Euler and Maclaurin). So the wavefront moves by the
+ * half. */
 static double cover_of(const fine_grid *g, int at, double *waves)
 {
     const int m = g->m, j = at / m, i = at % m;

@@ -25,7 +25,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "lesson/lesson.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "scene/model/params.h"
 
 #include <limits.h>

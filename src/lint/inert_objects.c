@@ -376,7 +376,7 @@ static bool ends_in(const char *path, const char *ending)
     return length >= size && strcasecmp(path + length - size, ending) == 0;
 }
 
-/* Each kind of file has its own parameters: scene/assets/optical_files.h. */
+/* Each kind of file has its own parameters: scene/data/optical_files.h. */
 bool not_of_file(const inert_case *c)
 {
     const char *path = c->s->data[c->at.index].path;

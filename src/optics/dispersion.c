@@ -85,7 +85,7 @@ static double gas(const dispersion *law, double L2, double from)
 }
 
 /* Formulas 4, 7, 8 and 9 of M. N. Polyanskiy, "Refractiveindex.info database of optical constants", Sci. Data 11, 94
- * (2024); a glass catalogue's formulas are special cases (scene/assets/optical_files.c). */
+ * (2024); a glass catalogue's formulas are special cases (scene/data/optical_files.c). */
 static double two_resonances(const dispersion *law, double L)
 {
     const double *a = law->coefficient;

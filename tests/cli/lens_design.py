@@ -66,8 +66,8 @@ def paraxial():
 
 
 def meridional(y, u, nm):
-    """A ray in the meridional plane from the first vertex's plane, as (height, sine, path) in the image's plane, and its
-    height at the stop."""
+    """A ray in the meridional plane from the first vertex's plane, as (height, sine, path) in the image's plane, and
+    its height at the stop."""
     z, n, path, slope = 0.0, 1.0, 0.0, math.sqrt(1.0 - u * u)
     dy, dz, stop, at = u, slope, 0.0, 0.0  # z: of the ray's point, `at` of the vertex
     for i, (c, t, glass, _) in enumerate(SURFACES):
@@ -98,8 +98,8 @@ def transmission():
 
 
 def strehl():
-    """On the axis, by wavelength: the Debye integral along the pupil's radius, for a rotationally symmetric wavefront on
-    the sphere about the image's point that reaches to the exit pupil."""
+    """On the axis, by wavelength: the Debye integral along the pupil's radius, for a rotationally symmetric wavefront
+    on the sphere about the image's point that reaches to the exit pupil."""
     y, u, n = 0.0, 1.0, 1.0
     for c, t, glass, _ in SURFACES[STOP:]:
         after = index(glass, WAVES[1][0])

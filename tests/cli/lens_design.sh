@@ -17,7 +17,8 @@ quick=(--spot 8 --wave 16 --fan 4 --csv)
 wanted write
 
 # --- one index for paraxial and real rays, from each form of the lens
-axial() { awk -F, '$1 == "axial-colour" && $6 == "efl" { efl[$4] = $7 } $1 == "axial-colour" && $6 == "focus" { f[$4] = $7 }
+axial() { awk -F, '$1 == "axial-colour" && $6 == "efl" { efl[$4] = $7 }
+    $1 == "axial-colour" && $6 == "focus" { f[$4] = $7 }
     END { for (nm in f) printf "%.4f %.7f %.7f\n", nm, efl[nm], f[nm] }' | sort; }
 lens gauss.zmx -g glass.agf -o gauss.yaml >/dev/null && lens gauss.zmx -g glass.agf -o gauss.csv >/dev/null
 lens report gauss.zmx -g glass.agf "${quick[@]}" >zmx.rows
@@ -33,18 +34,23 @@ d=$(wanted paraxial | awk 'NR == 2 { print $2 }')
 equal "the table of a file" "$(focal gauss.zmx -g glass.agf)" "$(printf '%.6f0' "$d")"
 equal "the table of a scene" "$(focal gauss.yaml)" "$(focal gauss.zmx -g glass.agf)"
 lens gauss.yaml -o again.yaml >/dev/null && lens again.yaml -o again.zmx >/dev/null
-equal "a scene of the scene, and a file of that" "$(focal again.yaml) $(focal again.zmx -g glass.agf)" "$(focal gauss.yaml) $(focal gauss.yaml)"
+equal "a scene of the scene, and a file of that" "$(focal again.yaml) $(focal again.zmx -g glass.agf)" \
+    "$(focal gauss.yaml) $(focal gauss.yaml)"
 
 # --- a scene keeps fields, wavelengths with their weights, the primary one and the aperture
 lens report gauss.yaml "${quick[@]}" >yaml.rows
 differ() { # FILE FILE: the largest relative difference of values, and the number of rows that one of them lacks
     awk -F, 'FNR == 1 { file++; next } { key = $1 FS $2 FS $3 FS sprintf("%.7f", $4) FS sprintf("%.9f", $5) FS $6 }
         file == 1 { of[key] = $7; next } !(key in of) { lacks++; next }
-        { d = $7 - of[key]; s = $7 * $7 + of[key] * of[key] + 1e-6; if (d * d / s > most) most = d * d / s; delete of[key] }
+        { d = $7 - of[key]; s = $7 * $7 + of[key] * of[key] + 1e-6
+          if (d * d / s > most) most = d * d / s
+          delete of[key] }
         END { print (sqrt(most) < 1e-6 ? "same" : sqrt(most)), lacks + length(of) }' "$1" "$2"
 }
 equal "the report of a scene is that of its file" "$(differ zmx.rows yaml.rows)" "same 0"
-facts() { awk '/^(ENPD|OBNA|FTYP|XFLN|YFLN|WAVM|PWAV)/ { if ($1 == "WAVM") $3 = sprintf("%.7f", $3); $1 = $1; print }' "$1"; }
+facts() {
+    awk '/^(ENPD|OBNA|FTYP|XFLN|YFLN|WAVM|PWAV)/ { if ($1 == "WAVM") $3 = sprintf("%.7f", $3); $1 = $1; print }' "$1"
+}
 equal "a file of the scene has them all" "$(facts again.zmx)" "ENPD 33.33 0
 FTYP 0 0 3 3 0 0 0
 XFLN 0 0 0
@@ -63,7 +69,8 @@ field_height,0,10,20"
 # --- the Strehl ratio on the axis, from the default number of rays; at 486 nm the peak is not on the axis
 lens report gauss.zmx -g glass.agf --spot 8 --fan 4 --field 0 --csv >full.rows
 awk -F, 'NR == FNR { split($0, a, " "); of[a[1]] = a[2]; next }
-    $1 == "wavefront" && $6 == "strehl_diffraction" && $4 > 500 { k = sprintf("%.4f", $4); worse += ($7 / of[k] - 1) ^ 2 > 4e-6; n++ }
+    $1 == "wavefront" && $6 == "strehl_diffraction" && $4 > 500 {
+        k = sprintf("%.4f", $4); worse += ($7 / of[k] - 1) ^ 2 > 4e-6; n++ }
     END { exit n != 2 || worse }' <(wanted strehl) full.rows
 verdict $? "Strehl ratios are those of an integral along the radius" "$(
     wanted strehl
@@ -74,11 +81,13 @@ verdict $? "Strehl ratios are those of an integral along the radius" "$(
 sed 's/^pupil.*/pupil,0.2/' gauss.csv >slow.csv
 lens report slow.csv -g glass.agf "${quick[@]}" --field 0 >slow.rows
 equal "surfaces pass on what Fresnel's formulas say" \
-    "$(awk -F, '$1 == "transmission" && $6 == "surfaces" { printf "%.4f %.6f\n", $4, $7 }' slow.rows | sort)" "$(wanted transmission)"
+    "$(awk -F, '$1 == "transmission" && $6 == "surfaces" { printf "%.4f %.6f\n", $4, $7 }' slow.rows | sort)" \
+    "$(wanted transmission)"
 # At 400 nm every glass passes 0.9 in 10 mm: the elements on the axis are 46.85 mm thick.
 sed 's/^wavelength_nm.*/wavelength_nm,400/' slow.csv >violet.csv
 equal "and media what Beer's law does" \
-    "$(lens report violet.csv -g glass.agf "${quick[@]}" --field 0 | awk -F, '$1 == "transmission" && $6 == "media" { printf "%.5f", $7 }')" \
+    "$(lens report violet.csv -g glass.agf "${quick[@]}" --field 0 |
+        awk -F, '$1 == "transmission" && $6 == "media" { printf "%.5f", $7 }')" \
     "$(python3 -c 'print(f"{0.9 ** 4.685:.5f}")')"
 equal "the illuminance of field 1 is 1" "$(awk -F, '$1 == "illumination" && $6 == "relative" { print $7 }' slow.rows)" 1
 
@@ -105,6 +114,7 @@ equal "and take the same" "$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 
     "$(row z_entrance_pupil rows) $(row entrance_pupil rows)"
 lens nostop.zmx -g glass.agf -o nostop.yaml 2>said.scene >/dev/null
 lens nostop.yaml 2>said.again | sed -n '/^paraxial/,$p' >again
-equal "a scene has that stop, and says no more" "$(cat said.again)$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' again)" \
+equal "a scene has that stop, and says no more" \
+    "$(cat said.again)$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' again)" \
     "$(awk '/entrance pupil/ { printf "%.6f %.6f", $3, $5 }' table)"
 conclude

@@ -1,7 +1,7 @@
 /* The libFuzzer entry for files of optical data; the first byte chooses the kind of file. Any bytes give data or one
  * error with a remedy. Data that are accepted have finite values at every wavelength, and an n of a law above 0 in its
  * range. */
-#include "scene/assets/optical_files.h"
+#include "scene/data/optical_files.h"
 
 #include "fuzz.h"
 #include <math.h>

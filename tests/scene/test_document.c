@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/budget.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "optics/media.h"
 #include "render_fixture.h"
-#include "scene/assets/optical_files.h"
+#include "scene/data/optical_files.h"
 #include "scene/file/write.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"

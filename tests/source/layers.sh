@@ -13,7 +13,7 @@ cd "$(dirname "$0")/../.."
 folder_order='
 geometry  mesh hierarchy . primitives shapes regions
 render    plan photons tracer shade camera zbuffer integrators caustics frame inspect
-scene     model lens file assets motion package
+scene     model data lens file assets motion package
 study     . plan rows fit run summary plot
 wasm      . api
 web       http document live session api .

@@ -1,8 +1,8 @@
-/* Reads script files through the tree of scene/file/document.h. The grammar is in the header. Required: hands; in each
+/* Reads script files through the tree of scene/data/document.h. The grammar is in the header. Required: hands; in each
  * entry time_s and one act; in a grab also towards and reach. hand_script_add checks the sequence of acts. */
 #include "base/number.h"
 #include "scene/assets/slime.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -18,7 +18,8 @@
  * the rows of the table (scene/model/params.h); a solid may also have those of a material. Vectors and colours are
  * lists: [0, 1, 2]. The file's order is kept. Sections and objects may be empty. scene_read (shared_read.c) opens the
  * file. */
-#include "scene/file/document.h"
+#include "scene/data/document.h"
+#include "scene/file/read_lens.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 #include "scene/model/place/placement.h"

@@ -1,13 +1,14 @@
-/* Reads the section lens_systems (document.h):
+/* Reads the section lens_systems (read_lens.h):
  *
  *   lens_systems: {NAME: {file: PATH, glasses: PATH or [PATH, ...], position: [X, Y, Z], rotation: [X, Y, Z],
  *                  scale: S, priority: P, mount: SWITCH, screen: SWITCH}, ...}
  *
  * Instead of the file, `surfaces` may give a list of maps with the columns of a .csv lens file, next to the keys of
  * such a file (f_number, field_deg, ...). They become the text of such a file, so that there is one reader. */
+#include "scene/file/read_lens.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "scene/lens/lens_prescription.h"
 #include "scene/model/scene.h"
 

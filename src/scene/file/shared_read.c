@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/installed.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/file/read_lens.h"
 #include "scene/file/shared.h"
 #include "scene/model/open.h"
 #include "scene/model/scene.h"

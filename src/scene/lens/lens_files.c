@@ -1,12 +1,13 @@
 /* Reads lens files: tables (.dat of pbrt, .csv); lens_zmx.c reads those of Zemax (lens_prescription.h).
  *
- * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line for
- * each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
- * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius; coating, of
- * all faces of glass in air; vdx, vdy, vcx and vcy, vignetting factors with a number for each field. Columns: radius (0,
- * empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4 ... a20, a1, a2, a3, a5 ...
- * a15, form (round, biconic or toric) with radius_x and conic_x, stop (any text but 0), hole, name, tilt_x and tilt_y
- * (degrees, of a flat mirror that folds the axis); all but radius and thickness may be missing. */
+ * A .csv file: lines beginning with # are comments. Lines KEY, VALUE ... come first, then the header, then a line
+ * for each surface. Keys: title; unit_mm; object_distance; one of pupil, f_number and object_na; field_deg or
+ * field_height with a list; wavelength_nm with a list, the primary one first; image_diameter; image_radius;
+ * coating, of all faces of glass in air; vdx, vdy, vcx and vcy, vignetting factors with a number for each field.
+ * Columns: radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4
+ * ... a20, a1, a2, a3, a5 ... a15, form (round, biconic or toric) with radius_x and conic_x, stop (any text but
+ * 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and thickness
+ * may be missing. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"

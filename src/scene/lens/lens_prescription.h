@@ -189,9 +189,10 @@ typedef struct lens_first_order {
 lens_first_order lens_first_order_of(const lens_prescription *p, double lambda_nm);
 lens_first_order lens_first_order_x(const lens_prescription *p, double lambda_nm);
 
-/* Fills what the file leaves open, with a note: the stop, which is the surface that a beam on the axis fills first (it
- * stays -1 where that surface's own edge is the aperture); clear diameters from the paraxial rays of axis and outermost field (never below
- * what the beam needs at the stop), and the distance of the image if the last thickness is 0. */
+/* Fills what the file leaves open, with a note: the stop, which is the surface that a beam on the axis fills first
+ * (it stays -1 where that surface's own edge is the aperture); clear diameters from the paraxial rays of axis and
+ * outermost field (never below what the beam needs at the stop), and the distance of the image if the last
+ * thickness is 0. */
 void lens_prescription_complete(lens_prescription *p);
 
 /* Files of lens prescriptions, by their ending:

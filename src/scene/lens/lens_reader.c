@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/assets/optical_files.h"
+#include "scene/data/optical_files.h"
 #include "scene/model/names.h"
 #include "scene/model/scene.h"
 

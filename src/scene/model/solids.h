@@ -127,7 +127,7 @@ typedef struct texture_entry {
     const texture *data;                   /* a counted reference; NULL until scene_load */
 } texture_entry;
 
-/* A file of optical data (scene/assets/optical_files.h). */
+/* A file of optical data (scene/data/optical_files.h). */
 typedef struct data_entry {
     char *name;
     char *path; /* relative to the scene file */

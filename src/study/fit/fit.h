@@ -11,7 +11,7 @@
 
 #include "job/job.h"
 #include "job/quantities.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "study/rows/rows.h"
 #include "study/study.h"
 

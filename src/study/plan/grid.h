@@ -2,7 +2,7 @@
  * the order in which cells are measured. Pure except for memory. */
 #pragma once
 
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "study/study.h"
 
 /* Reads a study that is a fit (study/fit/fit.h): it has a section `fit`, and no grid, repetitions or kept files. *d:

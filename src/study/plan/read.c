@@ -23,7 +23,7 @@
 #include "base/installed.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "study/plan/grid.h"
 #include "study/plan/identity.h"
 #include "study/plan/keep.h"

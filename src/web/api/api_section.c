@@ -10,7 +10,7 @@
 #define SECTION_REMEDY \
     "give ?view=front, top or side, or ?through=SOLID; &at=X,Y,Z, &extent=U0,U1,V0,V1 and &cells=N are optional"
 
-/* Limits the time for which a picture must wait. */
+/* Limits the time for which an image must wait. */
 enum { CELLS_MAX = 1000 };
 
 typedef struct section_question {

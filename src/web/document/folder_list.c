@@ -5,7 +5,7 @@
 #include "base/json_build.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "scene/lens/lens_prescription.h"
 #include "web/document/folder.h"
 

@@ -2,7 +2,7 @@
 #include "base/json_build.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "web/session/studies.h"
 
 #include <dirent.h>

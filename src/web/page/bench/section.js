@@ -12,7 +12,7 @@
  *   plane, port, areas, segments, hits   what is drawn, as in section_plane.js and section_rays.js; null before the
  *                                        first reply
  *   drawn                                the generation of the outlines and rays that are shown
- *   draw(), ask()                        draws again; asks for what is missing */
+ *   draw(), ask()                        draws again; requests what is missing */
 
 import {
   button,

@@ -94,8 +94,8 @@ export function createHand(lab, section, stage) {
 
   function startOf(name) {
     const [u, v, away] = flat(section.plane, placeOf(name));
-    const beside = Math.abs(away) * port.scale > 1 ? `, ${digits(Math.abs(away), 3)} units beside this plane` : '';
-    const label = `Start of ${name}${beside}`;
+    const distance = Math.abs(away) * port.scale > 1 ? `, ${digits(Math.abs(away), 3)} units away from this plane` : '';
+    const label = `Start of ${name}${distance}`;
     return { id: `start ${name}`, name, turns: false, x: port.x(u), y: port.y(v), label };
   }
 

@@ -1,5 +1,5 @@
 /* Builds the tree of a YAML file from libyaml's events, reports its errors as diagnostics, and answers queries. */
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "base/array.h"
 #include "base/budget.h"
 #include "base/file.h"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "base/status.h"
-#include "scene/model/open.h"
 #include <stdbool.h>
 
 typedef enum node_kind { NODE_SCALAR, NODE_LIST, NODE_MAP } node_kind;
@@ -43,19 +42,3 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
 bool node_is_value(const node *n);
 /* A value as text ("8", "0,2.75,-6"); newly allocated; NULL for other nodes or if memory runs out. */
 char *node_value_text(const node *n);
-
-/* Reads the section lens_systems of a scene file, whose systems become solids (scene/lens/lens_prescription.h). Private
- * to this folder. */
-
-/* Whether the scene's text may name lens files, and below which folder: not for texts that come without their file,
- * such as shared scenes. root: as in file_read_below; borrowed. */
-typedef struct lens_access {
-    bool allowed;
-    const char *root;
-} lens_access;
-
-status read_lens_systems(const document *file, const lens_access *access, scene *s, const node *map, diagnostic *why);
-
-/* scene_read_text with this access. */
-status read_scene_text(const char *name, const char *text, size_t size, const lens_access *access, scene **out,
-                       diagnostic *why);

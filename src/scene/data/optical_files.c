@@ -1,12 +1,12 @@
 /* Reads files of optical data (optical_files.h). */
-#include "scene/assets/optical_files.h"
+#include "scene/data/optical_files.h"
 
 #include "base/array.h"
 #include "base/file.h"
 #include "base/lanes.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "scene/file/document.h"
+#include "scene/data/document.h"
 #include "scene/model/names.h"
 
 #include <ctype.h>
