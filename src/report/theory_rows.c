@@ -1,4 +1,5 @@
-/* Writes measured values next to theory: metrics and curves of optics, and the motion of slimes; lessons and their results. */
+/* Writes measured values next to theory: metrics and curves of optics, and the motion of slimes; lessons and their
+ * results. */
 #include "base/json_build.h"
 #include "report/json.h"
 #include "report/param_rows.h"
