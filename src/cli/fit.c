@@ -253,6 +253,30 @@ static void note_idle_parameters(const fit *f, const fit_result *r)
     }
 }
 
+/* The merit is chi-squared if each target has a sigma. By the cube root of chi-squared over its degrees of freedom,
+ * which is nearly normal (Wilson and Hilferty, PNAS 17, 1931), values this large have a probability below 0.001. */
+static void note_misfit(const fit *f, const fit_result *r)
+{
+    const double spread = 2.0 / (9.0 * (double)r->freedom);
+    size_t worst = 0;
+    double most = 0.0;
+    for (size_t i = 0; i < f->target_count; i++) {
+        const double off = fabs(r->best.values[i] - f->targets[i].value) / f->targets[i].sigma;
+        if (!(f->targets[i].sigma > 0.0))
+            return;
+        if (off > most)
+            worst = i, most = off;
+    }
+    if (r->freedom <= 0 || !(cbrt(r->best.merit / (double)r->freedom) - (1.0 - spread) > 3.09 * sqrt(spread)))
+        return;
+    char text[400];
+    snprintf(text, sizeof text,
+             "%s: chi-squared is %.4g with %ld degrees of freedom, far too large, so that the intervals mean nothing: "
+             "the model, a value or a sigma is wrong; %.64s is off by %.3g sigma",
+             f->s->name, r->best.merit, r->freedom, f->targets[worst].name, most);
+    terminal_note(text);
+}
+
 /* What is doubtful about the intervals. */
 static void note_profiles(const fit *f, const fit_result *r)
 {
@@ -298,7 +322,7 @@ static status search_and_report(const fit_request *request, fit_run *run, fit_pr
     if (code == STATUS_INTERRUPTED)
         code = report_interrupted(run, why);
     if (code == STATUS_OK && !request->quiet)
-        note_idle_parameters(f, r), note_profiles(f, r);
+        note_idle_parameters(f, r), note_misfit(f, r), note_profiles(f, r);
     if (code == STATUS_OK && request->output)
         code = write_scene(f, r, request->output, why);
     if (code == STATUS_OK && request->json)

@@ -47,6 +47,12 @@ grep -qE '^liquid\.ior +1\.33[0-9]+ +1\.3[0-9]+ \.\. 1\.3[0-9]+  ' out && [[ ! -
 verdict $? 'the index has an interval of its profile' "$(<out)$(<err)"
 grep -q ',profile,' out_water/index_of_water/fit.csv
 verdict $? 'evaluations of a profile are rows'
+# One of six positions is off by 10 px: the interval is narrow, and wrong.
+sed 's|scene: ../scenes|scene: '"$root"'/experiments/scenes|; s/value: 427.1/value: 437.1/' \
+    "$fits/index_of_water.study" >outlier.study
+fit outlier.study
+grep -qE 'note: .*chi-squared is [0-9.e+]+ with 5 degrees of freedom, far too large.* left_3 is off by [0-9.]+ sigma' err
+verdict $? 'a merit far too large is noted, with the worst target' "$(<err)"
 sed 's|scene: ../scenes|scene: '"$root"'/experiments/scenes|; s/to: 1.6, start: 1.45/to: 1.334/' \
     "$fits/index_of_water.study" >bound.study
 fit bound.study
