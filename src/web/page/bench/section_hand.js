@@ -94,8 +94,9 @@ export function createHand(lab, section, stage) {
 
   function startOf(name) {
     const [u, v, away] = flat(section.plane, placeOf(name));
-    const distance = Math.abs(away) * port.scale > 1 ? `, ${digits(Math.abs(away), 3)} units away from this plane` : '';
-    const label = `Start of ${name}${distance}`;
+    const distance = digits(Math.abs(away), 3);
+    const inPlane = Math.abs(away) * port.scale <= 1;
+    const label = inPlane ? `Start of ${name}` : `Start of ${name}, ${distance} units away from this plane`;
     return { id: `start ${name}`, name, turns: false, x: port.x(u), y: port.y(v), label };
   }
 

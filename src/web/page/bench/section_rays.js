@@ -203,9 +203,9 @@ export function hitMarks(port, plane, mark, options) {
 function indices(mark, normal, incoming, options) {
   const across = [-normal[1], normal[0]];
   const side = across[0] * incoming[0] + across[1] * incoming[1] > 0 ? 1 : -1;
-  const onSide = (sign) => unitOf(normal.map((x, axis) => sign * (x + side * across[axis])));
+  const between = (sign) => unitOf(normal.map((x, axis) => sign * (x + side * across[axis])));
   return [
-    ...label(mark, onSide(1), 40, `n₁ = ${digits(mark.hit.from.n, 5)}`, 'index', options),
-    ...label(mark, onSide(-1), 40, `n₂ = ${digits(mark.hit.to.n, 5)}`, 'index', options),
+    ...label(mark, between(1), 40, `n₁ = ${digits(mark.hit.from.n, 5)}`, 'index', options),
+    ...label(mark, between(-1), 40, `n₂ = ${digits(mark.hit.to.n, 5)}`, 'index', options),
   ];
 }
