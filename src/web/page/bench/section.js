@@ -42,7 +42,7 @@ const VIEWS = [
 ];
 const AXIS_OF = { top: 1, front: 2, side: 0 };
 const MARGIN = 0.3; /* beyond the window, for pans */
-const CELLS = { moving: 160, resting: 420 };
+const CELLS = { moving: 96, resting: 420 };
 const REST_MS = 180;
 const RETRY_MS = 2000; /* after an error */
 const ZOOM = 1.25;
