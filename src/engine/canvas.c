@@ -1,6 +1,6 @@
 /* Filling the caller's buffers, and passing finished tiles to the caller. */
-#include "engine/canvas.h"
 #include "base/array.h"
+#include "engine/engine_private.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 
 enum { CHUNK = 256 /* pixels converted at a time */ };
 
-static int lesser(int a, int b)
+static int smaller(int a, int b)
 {
     return a < b ? a : b;
 }
@@ -68,7 +68,7 @@ static void fill_coarse(const canvas *c, const film *f, int x0, int y0, int x1, 
             float rgb[3];
             film_read(f, x, y, x + 1, y + 1, rgb, 3);
             const int left = x * coarse, top = y * coarse;
-            fill_square(c, rgb, left, top, lesser(coarse, r->width - left), lesser(coarse, r->height - top));
+            fill_square(c, rgb, left, top, smaller(coarse, r->width - left), smaller(coarse, r->height - top));
         }
 }
 
@@ -78,7 +78,7 @@ void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x
     float rgb[3 * CHUNK];
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x += CHUNK) {
-            const int end = lesser(x + CHUNK, x1);
+            const int end = smaller(x + CHUNK, x1);
             unsigned char *row = srgb + (size_t)(y - y0) * stride + 3 * (size_t)(x - x0);
             film_read(f, x, y, end, y + 1, rgb, sizeof rgb / sizeof *rgb);
             codec_bytes_encode(bytes, rgb, 3 * (size_t)(end - x), row);

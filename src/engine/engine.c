@@ -1,5 +1,4 @@
 /* Engines, and the rendering of a request: checks, a preview, the film, the caller's buffers and callbacks. */
-#include "engine/canvas.h"
 #include "engine/engine_private.h"
 #include "measure/clock.h"
 #include "scene/file/shared.h"

@@ -1,5 +1,4 @@
 /* Access to a frame (pixels, hash, counts, times), and to images of files. */
-#include "engine/canvas.h"
 #include "engine/engine_private.h"
 #include "image/compare.h"
 #include "render/frame/record.h"

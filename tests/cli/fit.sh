@@ -51,7 +51,7 @@ verdict $? 'evaluations of a profile are rows'
 sed 's|scene: ../scenes|scene: '"$root"'/experiments/scenes|; s/value: 427.1/value: 437.1/' \
     "$fits/index_of_water.study" >outlier.study
 fit outlier.study
-grep -qE 'note: .*chi-squared is [0-9.e+]+ with 5 degrees of freedom, far too large.* left_3 is off by [0-9.]+ sigma' err
+grep -qE 'chi-squared is [0-9.e+]+ with 5 degrees of freedom, far too large.* left_3 is off by [0-9.]+ sigma' err
 verdict $? 'a merit far too large is noted, with the worst target' "$(<err)"
 sed 's|scene: ../scenes|scene: '"$root"'/experiments/scenes|; s/to: 1.6, start: 1.45/to: 1.334/' \
     "$fits/index_of_water.study" >bound.study

@@ -1,7 +1,6 @@
 /* The memory of tracers, and the pool that lends them to workers. */
 #include "render/frame/tracers.h"
 
-#include "render/shade/crystals.h"
 #include "render/shade/footprints.h"
 #include "render/shade/kernels.h"
 #include "render/shade/media.h"

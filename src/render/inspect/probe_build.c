@@ -7,7 +7,6 @@
 #include "base/cancel.h"
 #include "geometry/regions/instance_set.h"
 #include "optics/interface.h"
-#include "render/shade/crystals.h"
 #include "render/shade/media.h"
 #include "render/shade/polarisation.h"
 #include "render/shade/rough.h"

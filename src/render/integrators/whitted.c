@@ -3,7 +3,6 @@
  * casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968) is its first level: the
  * local light of camera rays' hits, with shadows, and no secondary rays. */
 #include "render/camera/camera_rays.h"
-#include "render/shade/crystals.h"
 #include "render/shade/exposure.h"
 #include "render/shade/light_sampling.h"
 #include "render/shade/shading.h"

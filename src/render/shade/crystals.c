@@ -1,5 +1,4 @@
 /* Double refraction: the children of rays that meet crystals. */
-#include "render/shade/crystals.h"
 
 #include "optics/interface.h"
 #include "render/shade/exposure.h"

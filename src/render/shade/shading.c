@@ -3,7 +3,6 @@
 #include "render/shade/shading.h"
 
 #include "geometry/primitives/primitive.h"
-#include "render/shade/crystals.h"
 #include "render/shade/footprints.h"
 #include "render/shade/kernels.h"
 #include "render/shade/polarisation.h"

@@ -23,7 +23,7 @@ typedef struct ray_queue {
     int64_t *start, *sample_key; /* start: face on which the ray starts; sample_key: see render/plan/sampling.h */
     uint64_t *inside;
     /* with polarisation: the analyser's Stokes vector relative to its first element, also for shadow rays in a scene
-     * with sheets; in a crystal sq is the mode (render/shade/crystals.h) */
+     * with sheets; in a crystal sq is the mode (render/shade/shading.h) */
     double *sq, *su, *sv;
     double *passed, *bent; /* for photons: lengths of the path so far, and of its part after the first surface */
     /* for shadow rays to polarised lamps: the lamp's linear Stokes elements; in the memory of passed and bent */

@@ -143,7 +143,7 @@ static status start_error(const fit *f, const fit_evaluation *e, const diagnosti
         return STATUS_BAD_INPUT;
     }
     diagnose(why, STATUS_BAD_INPUT,
-             reason->remedy[0] ? reason->remedy : "choose another start, at which rays arrive and what is measured is seen",
+             reason->remedy[0] ? reason->remedy : "choose another start, at which rays arrive and it is in view",
              "%.64s cannot be measured at the start%s%.400s", f->targets[lacking].name, reason->what[0] ? ": " : "",
              reason->what);
     diagnostic_locate(why, f->s->path, f->targets[lacking].of.line, f->targets[lacking].of.column);

@@ -1,7 +1,6 @@
 /* A render in turns, for scripts: each turn renders tiles for a while, so that the script can show them, be cancelled
  * and do other work in between. The film equals that of cuvette_engine_render, because tiles add exactly. */
 #include "base/json_build.h"
-#include "engine/canvas.h"
 #include "engine/engine_private.h"
 #include "measure/clock.h"
 #include "render/frame/renderer.h"
