@@ -216,9 +216,8 @@ static status read_section_rule(const cuvette_section_rule *given, section_rule 
 cuvette_status cuvette_query_write_section(const cuvette_query *query, const cuvette_section_rule *rule,
                                            const char *path, cuvette_diagnostic *why)
 {
+    ENGINE_CALL(query, rule, path);
     static const ray_writer forms[] = {{".svg", write_section_drawing}, {".json", write_section_json}};
-    ENGINE_ENTER();
-    ENGINE_NEED(query, rule, path);
     section_rule read;
     cuvette_query *q = NULL;
     status code = read_section_rule(rule, &read, &inner);

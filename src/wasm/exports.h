@@ -68,7 +68,7 @@ char *wasm_scene_lens(const struct cuvette_scene *scene, const char *system);
 /* A render in turns. coarse: the divisor of width and height, 1 for the full image. Until the last turn, or until
  * wasm_render_destroy, the scene refuses changes. A turn returns a status; it ends after budget_s or somewhat later. */
 typedef struct wasm_render wasm_render;
-wasm_render *wasm_render_create(struct cuvette_scene *scene, int coarse);
+wasm_render *wasm_render_create(struct cuvette_scene *of, int coarse);
 void wasm_render_destroy(wasm_render *r);
 int wasm_render_turn(wasm_render *r, double budget_s);
 double wasm_render_fraction(const wasm_render *r); /* the fraction that is rendered; 1: complete */

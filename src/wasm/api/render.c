@@ -69,7 +69,7 @@ static status begin(wasm_render *r, int coarse, diagnostic *why)
     return tiled_frame_begin(&r->view, side_of(&r->view.render), &r->sum, why);
 }
 
-wasm_render *wasm_render_create(cuvette_scene *scene, int coarse)
+wasm_render *wasm_render_create(cuvette_scene *of, int coarse)
 {
     diagnostic why = {.line = 0};
     wasm_render *r = calloc(1, sizeof *r);
@@ -77,13 +77,13 @@ wasm_render *wasm_render_create(cuvette_scene *scene, int coarse)
         results_report(out_of_memory(&why), &why);
         return NULL;
     }
-    r->source = scene;
-    if (results_note(engine_begin_render(scene, &results_last)) != CUVETTE_OK) {
+    r->source = of;
+    if (results_note(engine_begin_render(of, &results_last)) != CUVETTE_OK) {
         free(r);
         return NULL;
     }
     r->locked = true;
-    atomic_fetch_add(&scene->owners, 1);
+    atomic_fetch_add(&of->owners, 1);
     if (results_report(begin(r, coarse < 1 ? 1 : coarse, &why), &why) != CUVETTE_OK) {
         wasm_render_destroy(r);
         return NULL;
