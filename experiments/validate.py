@@ -25,7 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "experiments/validation"
 KEYS = "what source given expected nature unit scene files command read tolerance because".split()
 NEEDED = "what source expected command read tolerance because".split()
-COLUMNS = "kind case what source formula expected ours deviation tolerance reason unit verdict nature".split()
+COLUMNS = "kind case what source formula expected ours deviation tolerance reason unit nature verdict".split()
 
 
 class Trouble(Exception):
@@ -329,8 +329,8 @@ def judge(program, case):
         "deviation": "",
         "expected": "",
         "tolerance": "",
-        "verdict": "error",
         "nature": "",
+        "verdict": "error",
     }
     row = {key: re.sub(r"\s+", " ", text) for key, text in row.items()}
     try:
