@@ -101,7 +101,7 @@ static void test_a_tree_outlives_its_query(void **state)
     fine(cuvette_tree_write(tree, path, &why), &why);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(cuvette_tree_write(tree, "tree.png", &why), CUVETTE_BAD_INPUT);
-    assert_string_equal(why.remedy, "use .txt, .json or .svg");
+    assert_string_equal(why.remedy, "use .txt, .json, .csv or .svg");
     cuvette_tree_destroy(tree);
 }
 

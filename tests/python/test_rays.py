@@ -67,7 +67,7 @@ def test_tree_equals_the_programs(rod, program, tmp_path):
     assert own["radiance"] == other["radiance"] and own["root"] == other["root"]
     assert str(rod.trace((40, 30))) == program("trace", ROD, "--pixel", "40,30", *sets)
     assert rod.trace((40, 30))._repr_svg_().startswith("<svg")
-    with pytest.raises(cuvette.InputError, match="use .txt, .json or .svg"):
+    with pytest.raises(cuvette.InputError, match="use .txt, .json, .csv or .svg"):
         rod.trace((40, 30)).save(tmp_path / "tree.png")
 
 
