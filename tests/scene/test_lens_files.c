@@ -265,7 +265,7 @@ static void refused(const char *name, const char *text, long line, long column, 
 static void mistakes_are_located(void **state)
 {
     (void)state;
-    refused("a.zmx", ZMX_HEAD "SURF 1\n  TYPE TOROIDAL\n" ZMX_TAIL, 9, 8, "type TOROIDAL");
+    refused("a.zmx", ZMX_HEAD "SURF 1\n  TYPE FZERNSAG\n" ZMX_TAIL, 9, 8, "type FZERNSAG");
     refused("a.zmx",
             ZMX_HEAD "SURF 1\n  TYPE COORDBRK\n  PARM 3 5\n  DISZ 0\nSURF 2\n  GLAS N-BK7\n  DISZ 5\n" ZMX_TAIL, 12, 0,
             "surface 2 is tilted");
