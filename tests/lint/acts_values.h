@@ -107,9 +107,14 @@ static inline void acts_lists(const char *now, acts_values *v)
         acts_add(v, now, pairs[k]);
 }
 
+/* Of a long list, such as the catalogue's media, evenly distributed ones, so that glasses and metals are among them. */
 static inline void acts_words(const char *const *words, const char *now, acts_values *v)
 {
-    for (size_t i = 0; words[i]; i++)
+    size_t count = 0;
+    while (words[count])
+        count++;
+    const size_t step = (count + ACTS_VALUES_MAX - 1) / ACTS_VALUES_MAX;
+    for (size_t i = 0; i < count; i += step)
         acts_add(v, now, words[i]);
 }
 
