@@ -10,7 +10,7 @@
 
 #include "random_scene.h"
 
-enum { SOLIDS = 1000, LINE = 800, SCENES = 60 };
+enum { SOLIDS = 1000, LINE = 1600, SCENES = 60 };
 
 /* A scene as lines, one a solid. */
 typedef struct crowd {
