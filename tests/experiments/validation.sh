@@ -80,8 +80,8 @@ wrong() { # WHAT SED MESSAGE
     equal "$1" "$code ${out#validate: }" "2 $3"
 }
 wrong "a case without a source" '/^source/d' "bad.cases:3: the case has no 'source'; add it"
-wrong "an unknown key" 's/^because/why/' "bad.cases:3: unknown key 'why'; the keys are what source given expected unit \
-scene files command read tolerance because"
+wrong "an unknown key" 's/^because/why/' "bad.cases:3: unknown key 'why'; the keys are what source given \
+expected nature unit scene files command read tolerance because"
 wrong "a line that is none" 's/^title.*/title/' "bad.cases:2: not a section, a new key or a line that continues; see \
 experiments/validation/README.md"
 conclude

@@ -37,7 +37,9 @@ export function createBenchOverlay(lab, bench) {
     );
   }
 
-  const nameOf = (segment) => (segment === bench.chosen ? 'bench-ray chosen' : 'bench-ray');
+  function nameOf(segment) {
+    return segment === bench.chosen ? 'bench-ray chosen' : 'bench-ray';
+  }
 
   /* The part of a line on the canvas. */
   function seen(line) {
