@@ -63,11 +63,13 @@ static void keep_sample(lens_samples *out, int at, const lens_ray *r, double wav
 
 /* What does not arrive goes on beyond the last three samples of a row or a column as a parabola: the mean of those that
  * do so from the four sides. */
-static void extend(double *v, int n)
+static status extend(double *v, int n, diagnostic *why)
 {
     static const int way[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     double *next = malloc((size_t)(n * n) * sizeof *next);
-    for (int round = 0; next && round < 3; round++) {
+    if (!next)
+        return out_of_memory(why);
+    for (int round = 0; round < 3; round++) {
         for (int i = 0; i < n * n; i++) {
             double sum = 0.0;
             int sides = 0;
@@ -83,6 +85,7 @@ static void extend(double *v, int n)
         memcpy(v, next, (size_t)(n * n) * sizeof *v);
     }
     free(next);
+    return STATUS_OK;
 }
 
 status lens_samples_trace(const lens_study *s, lens_beam *bundle, lens_samples *out, bool *any, diagnostic *why)
@@ -116,7 +119,7 @@ status lens_samples_trace(const lens_study *s, lens_beam *bundle, lens_samples *
         }
     }
     for (int k = 0; k < LENS_SAMPLE_KINDS; k++)
-        extend(out->value[k], n);
+        TRY(extend(out->value[k], n, why));
     return STATUS_OK;
 }
 

@@ -338,7 +338,7 @@ static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch
     }
 }
 
-/* A point projected onto side k by one Newton step along the gradient (-dz/dx, 1, -dz/dz) of y less the height, the
+/* A point projected onto side k by one Newton step along the gradient (-dh/dx, 1, -dh/dz) of y less the height h, the
  * normal out of the lens, and the distance. */
 static side_point point_on_asphere(const primitive *p, int k, vec3 q)
 {
