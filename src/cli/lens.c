@@ -82,6 +82,8 @@ static void print_surfaces(const lens_prescription *p)
         printf("%s%14.7g %14.7g %10.5g  %s%s%s", s->radius == 0.0 ? " " : "", s->thickness, s->diameter, s->conic,
                s->mirror ? "mirror" : lens_medium_text(&s->medium, word), even ? ", asphere" : "",
                p->stop == (int)i ? ", stop" : "");
+        if (s->chamfer > 0.0)
+            printf(", bevel %.7g", s->chamfer);
         if (lens_folds(s))
             printf(", tilted %.7g, %.7g degrees", s->tilt_x_deg, s->tilt_y_deg);
         putchar('\n');

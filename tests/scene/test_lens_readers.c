@@ -170,6 +170,31 @@ static void tables_lose_no_cell(void **state)
           "not read: the inner radius of the aperture of surface 1, which is no mirror");
 }
 
+/* From a table to a scene, back, and to a table again. */
+static void bevels_are_kept_by_tables_and_scenes(void **state)
+{
+    (void)state;
+    lens_prescription p = parsed("a.csv", "pupil,8\nunit_mm,1\nradius,thickness,medium,diameter,chamfer\n"
+                                          "50,5,bk7,20,0.25\n-50,40,,20,0.5\n"),
+                      back;
+    scene *s = NULL;
+    diagnostic why = {.what = ""};
+    assert_int_equal(lens_scene_create(&p, NULL, &s, &why), STATUS_OK);
+    assert_int_equal(lens_of_scene(s, NULL, &back, NULL, &why), STATUS_OK);
+    assert_true(back.surface[0].chamfer == 0.25 && back.surface[1].chamfer == 0.5);
+    char *text = written(&back, "a.csv");
+    lens_prescription again = parsed("a.csv", text);
+    assert_true(again.surface[0].chamfer == 0.25 && again.surface[1].chamfer == 0.5);
+    free(text);
+    scene_destroy(s);
+    lens_prescription_release(&p), lens_prescription_release(&back), lens_prescription_release(&again);
+    noted("a.csv", "radius,thickness,medium,diameter,chamfer\n50,5,bk7,20,0\n-50,2,sf2,20,0.5\n-90,40,,20,0\n",
+          "not read: the bevel of surface 2, which is no side of glass in air; no stop is stated: it is surface 1, "
+          "which a beam on the axis fills first; the image is 40 after the last surface, but the paraxial focus is "
+          "at 65.1065");
+    refused("a.csv", "radius,thickness,chamfer\n50,5,-1\n", 2, 6, "below 0", "0 or more");
+}
+
 static void what_a_format_lacks_is_told(void **state)
 {
     (void)state;
@@ -179,6 +204,8 @@ static void what_a_format_lacks_is_told(void **state)
     assert_non_null(strstr(lens_file_lacks(&p, "a.dat"), "names of glasses"));
     p.field[1].x = 1.0;
     assert_non_null(strstr(lens_file_lacks(&p, "a.csv"), "fields across y"));
+    p.surface[0].chamfer = 0.3;
+    assert_string_equal(lens_file_lacks(&p, "a.zmx"), "bevels");
     lens_prescription_release(&p);
 }
 
@@ -324,6 +351,7 @@ int main(void)
         cmocka_unit_test(words_that_act_on_light_are_noted),
         cmocka_unit_test(mistakes_of_words_and_cut_files_are_located),
         cmocka_unit_test(tables_lose_no_cell),
+        cmocka_unit_test(bevels_are_kept_by_tables_and_scenes),
         cmocka_unit_test(what_a_format_lacks_is_told),
         cmocka_unit_test(a_file_is_written_again_with_what_nothing_here_uses),
         cmocka_unit_test(numbers_are_the_shortest),

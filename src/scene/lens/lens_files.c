@@ -6,7 +6,7 @@
  * coating, of all faces of glass in air; vdx, vdy, vcx and vcy, vignetting factors with a number for each field.
  * Columns: radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4
  * ... a20, a1, a2, a3, a5 ... a15, form (round, biconic or toric) with radius_x and conic_x, stop (any text but
- * 0), hole, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and thickness
+ * 0), hole, chamfer, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and thickness
  * may be missing. */
 #include "base/file.h"
 #include "base/number.h"
@@ -91,12 +91,13 @@ typedef enum lens_column {
     COLUMN_ODD = COLUMN_EVEN + LENS_EVEN_TERMS,
     COLUMN_FORM = COLUMN_ODD + LENS_ODD_TERMS,
     COLUMN_RADIUS_X,
-    COLUMN_CONIC_X
+    COLUMN_CONIC_X,
+    COLUMN_CHAMFER
 } lens_column;
 const char *const lens_column_words[LENS_COLUMNS] = {
-    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name",     "tilt_x", "tilt_y", "a4",
-    "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",      "a1",     "a2",     "a3",
-    "a5",     "a7",        "a9",     "a11",      "a13",   "a15",  "form", "radius_x", "conic_x"};
+    "radius", "thickness", "medium", "diameter", "conic", "stop", "hole", "name",     "tilt_x",  "tilt_y", "a4",
+    "a6",     "a8",        "a10",    "a12",      "a14",   "a16",  "a18",  "a20",      "a1",      "a2",     "a3",
+    "a5",     "a7",        "a9",     "a11",      "a13",   "a15",  "form", "radius_x", "conic_x", "chamfer"};
 
 const char *const lens_key_words[LENS_KEYS] = {"title",
                                                "unit_mm",
@@ -301,6 +302,7 @@ static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS], int cells
     TRY(cell_number(r, at, COLUMN_DIAMETER, &s->diameter));
     TRY(cell_number(r, at, COLUMN_CONIC, &s->conic));
     TRY(cell_number(r, at, COLUMN_HOLE, &s->hole));
+    TRY(cell_number(r, at, COLUMN_CHAMFER, &s->chamfer));
     TRY(cell_number(r, at, COLUMN_TILT_X, &s->tilt_x_deg));
     TRY(cell_number(r, at, COLUMN_TILT_Y, &s->tilt_y_deg));
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
@@ -311,6 +313,8 @@ static status read_csv_row(lens_reader *r, const int at[LENS_COLUMNS], int cells
     if (s->diameter < 0.0 || s->hole < 0.0)
         return lens_wrong(r, at[s->diameter < 0.0 ? COLUMN_DIAMETER : COLUMN_HOLE], "give 0 or more",
                           "a diameter below 0 is out of range");
+    if (s->chamfer < 0.0)
+        return lens_wrong(r, at[COLUMN_CHAMFER], "give 0 or more", "a chamfer below 0 is out of range");
     snprintf(s->name, sizeof s->name, "%.63s", cell(r, at, COLUMN_NAME));
     const char *stop = cell(r, at, COLUMN_STOP), *word = cell(r, at, COLUMN_MEDIUM);
     if (*stop && strcmp(stop, "0") != 0) {
@@ -399,13 +403,14 @@ static status check(const lens_reader *r)
     if (p->count == 0)
         return lens_wrong(r, -1, "give a line for each surface", "the file has no surfaces");
     make_plain(r->p->title);
+    lens_drop_bevels(r->p);
     for (size_t i = 0; i < p->count; i++) {
         const lens_surface *s = &p->surface[i];
         lens_reader at = *r;
         make_plain(r->p->surface[i].name);
         at.line = s->line;
-        if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || fabs(s->conic) > most ||
-            fabs(s->radius_x) > most || fabs(s->conic_x) > most)
+        if (fabs(s->radius) > most || fabs(s->thickness) > most || s->diameter > most || s->chamfer > most ||
+            fabs(s->conic) > most || fabs(s->radius_x) > most || fabs(s->conic_x) > most)
             return lens_wrong(&at, -1, "use numbers below 1e9", "a number of surface %zu is too large", i + 1);
         if (lens_folds(s) && !(s->mirror && lens_is_flat(s) && s->medium.kind == LENS_AIR))
             return lens_wrong(&at, -1, "tilt flat mirrors in air only; in a scene, any solid can be turned",

@@ -156,6 +156,7 @@ lens_surface lens_side_of(const lens_finder *f, const placed_lens *l, int side)
                       .radius_x = get(f, of, "radius_%d_x", side),
                       .conic_x = get(f, of, "conic_%d_x", side),
                       .diameter = get(f, of, "diameter_%d", side),
+                      .chamfer = get(f, of, "chamfer_%d", side),
                       .medium = {.kind = LENS_AIR, .glass_file = -1}};
     char row[16];
     for (int i = 0; i < LENS_EVEN_TERMS; i++) {

@@ -158,9 +158,8 @@ void lens_coat(lens_builder *b, const lens_element *e)
     const lens_prescription *p = b->p;
     for (int side = 0; side < 2 && p->coating[0]; side++) {
         const size_t i = side ? e->back : e->front;
-        const lens_medium *before = i ? &p->surface[i - 1].medium : &p->object_medium, *after = &p->surface[i].medium;
         object_name glass, name;
-        if (p->surface[i].mirror || !(lens_is_air(before) || lens_is_air(after)))
+        if (!lens_side_in_air(p, i))
             continue;
         lens_material_name(e->medium, glass);
         snprintf(name, sizeof name, "%.50s-coated", glass);
@@ -277,6 +276,21 @@ static void add_ring(lens_builder *b, const char *name, const lens_leg *leg, dou
 bool lens_is_air(const lens_medium *m)
 {
     return m->kind == LENS_AIR;
+}
+
+bool lens_side_in_air(const lens_prescription *p, size_t i)
+{
+    const lens_medium *before = i ? &p->surface[i - 1].medium : &p->object_medium, *after = &p->surface[i].medium;
+    return !p->surface[i].mirror && lens_is_air(before) != lens_is_air(after);
+}
+
+void lens_drop_bevels(lens_prescription *p)
+{
+    for (size_t i = 0; i < p->count; i++)
+        if (p->surface[i].chamfer > 0.0 && !lens_side_in_air(p, i)) {
+            p->surface[i].chamfer = 0.0;
+            lens_note_item(p, "not read", "the bevel of surface %zu, which is no side of glass in air", i + 1);
+        }
 }
 
 /* In air, a ring in the plane of the stop, which yields to glass. On a surface of glass, a ring in the air at the edge

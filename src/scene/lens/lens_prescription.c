@@ -134,7 +134,7 @@ even_asphere lens_surface_shape(const lens_surface *s)
 lens_surface lens_surface_scaled(const lens_surface *s, double k)
 {
     lens_surface out = *s;
-    out.radius *= k, out.radius_x *= k, out.diameter *= k;
+    out.radius *= k, out.radius_x *= k, out.diameter *= k, out.chamfer *= k;
     for (int i = 0; i < LENS_EVEN_TERMS; i++)
         out.even[i] /= pow(k, 3 + 2 * i);
     for (int i = 0; i < LENS_ODD_TERMS; i++)

@@ -57,6 +57,7 @@ typedef struct lens_surface {
     lens_medium medium; /* after the surface; for a mirror that before it */
     double diameter;    /* clear diameter; 0: not stated */
     double hole;        /* diameter of the hole in a mirror; 0: none */
+    double chamfer;     /* length of the bevel at the edge of a side of glass in air (scene(5), chamfer_1); 0: none */
     /* Of a flat mirror that folds the axis: its normal is the axis, turned by tilt_y about Y and then by tilt_x about X
      * (Y to Z). What follows is given as if the mirror was not tilted, so that first-order data are those of the
      * unfolded system, along the folded axis. */
@@ -213,7 +214,7 @@ typedef struct lens_glasses {
 
 /* The columns and keys of .csv files (lens_files.c). */
 /* The last four keys are vignetting factors, which scenes do not hold. */
-enum { LENS_COLUMNS = 31, LENS_KEYS = 16, LENS_SCENE_KEYS = 12 };
+enum { LENS_COLUMNS = 32, LENS_KEYS = 16, LENS_SCENE_KEYS = 12 };
 extern const char *const lens_column_words[LENS_COLUMNS], *const lens_key_words[LENS_KEYS];
 
 /* Whether a path ends as such a file does. */

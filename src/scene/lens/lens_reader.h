@@ -219,6 +219,10 @@ double lens_side_height_at(const lens_builder *b, size_t surface, double rho, do
 /* The higher or the lower one of those in both meridians. */
 double lens_side_height(const lens_builder *b, size_t surface, double rho, bool highest);
 bool lens_is_air(const lens_medium *m);
+/* Whether surface i is between glass and air. */
+bool lens_side_in_air(const lens_prescription *p, size_t i);
+/* Removes and notes the bevels of other surfaces, which no element has. */
+void lens_drop_bevels(lens_prescription *p);
 /* The half diagonal of the image of the outermost field. */
 double lens_image_height(const lens_prescription *p, const lens_first_order *f);
 /* In air, a ring in the plane of the stop, which yields to glass. On a surface of glass, a ring in the air at the edge

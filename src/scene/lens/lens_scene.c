@@ -176,6 +176,7 @@ status lens_of_scene(const scene *s, const char *name, lens_prescription *out, l
     if (code == STATUS_OK) {
         const lens_placement place = placement_found(f);
         lens_read_beams(s, f->name, &place, out);
+        lens_drop_bevels(out);
         lens_prescription_complete(out);
         if (f->mirrors && out->stop < 0) /* the rim of a mirror, which has no solid */
             out->stop = lens_first_order_of(out, out->wavelength[0].nm).stop;

@@ -95,6 +95,7 @@ static void put_element(lens_builder *b, const lens_element *e)
     for (int k = 0; k < 2; k++) { /* a side that is smaller than the rim; one that is not round goes on up to it */
         const lens_surface *of = &b->p->surface[k == 0 ? e->front : e->back];
         const double own = of->form == SIDE_ROUND ? of->diameter : 0.0;
+        lens_put_number(&b->t, e->name, k == 0 ? "chamfer_1" : "chamfer_2", of->chamfer * scale);
         lens_put_number(&b->t, e->name, k == 0 ? "diameter_1" : "diameter_2",
                         own > 0.0 && own < e->diameter ? own * scale : 0.0);
     }

@@ -98,18 +98,27 @@ static int odd_terms_of(const lens_prescription *p)
     return terms;
 }
 
+static bool has_bevels(const lens_prescription *p)
+{
+    bool any = false;
+    for (size_t i = 0; i < p->count; i++)
+        any |= p->surface[i].chamfer > 0.0;
+    return any;
+}
+
 static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
 {
     char word[LENS_NAME_MAX];
     static const char *const forms[] = {"round", "biconic", "toric"};
     const int terms = terms_of(p), odd = odd_terms_of(p);
     const bool round = lens_is_round(p);
-    bool folds = false;
+    bool folds = false, bevels = has_bevels(p);
     for (size_t i = 0; i < p->count; i++)
         folds |= lens_folds(&p->surface[i]);
     (void)why;
     put_system(p, out);
     fputs("radius,thickness,medium,diameter,conic,stop,hole", out);
+    fputs(bevels ? ",chamfer" : "", out);
     fputs(folds ? ",tilt_x,tilt_y" : "", out);
     for (int k = 0; k < terms; k++)
         fprintf(out, ",a%d", 4 + 2 * k);
@@ -125,6 +134,8 @@ static status write_csv(const lens_prescription *p, FILE *out, diagnostic *why)
         put_number(out, ",", s->conic);
         fprintf(out, ",%d", p->stop == (int)i);
         put_number(out, ",", s->hole);
+        if (bevels)
+            put_number(out, ",", s->chamfer);
         if (folds)
             put_number(out, ",", s->tilt_x_deg), put_number(out, ",", s->tilt_y_deg);
         for (int k = 0; k < terms; k++)
@@ -417,10 +428,13 @@ const char *lens_file_lacks(const lens_prescription *p, const char *path)
         named |= p->surface[i].medium.kind == LENS_CATALOGUE || p->surface[i].medium.kind == LENS_DATA;
     if (strcasecmp(ending, ".dat") == 0)
         return named || p->field_count > 1 || p->wavelength_count > 1 || p->aperture_kind != LENS_APERTURE_STOP ||
-                       isfinite(p->object_distance)
-                   ? "names of glasses (n_d and V_d stand for them), the aperture, the object, fields and wavelengths"
+                       isfinite(p->object_distance) || has_bevels(p)
+                   ? "names of glasses (n_d and V_d stand for them), the aperture, the object, fields, wavelengths "
+                     "and bevels"
                    : NULL;
-    if (strcasecmp(ending, ".csv") != 0 || (!aside && !weighted))
+    if (strcasecmp(ending, ".csv") != 0)
+        return has_bevels(p) ? "bevels" : NULL;
+    if (!aside && !weighted)
         return NULL;
     return aside && weighted ? "the direction of fields across y and the weights of wavelengths"
            : aside           ? "the direction of fields across y"
