@@ -5,6 +5,7 @@
 import { saveVideo } from './edit/video_dialog.js';
 import { showHelp } from './keys.js';
 import { displayButton, themeButton } from './shared/display.js';
+import { languageMenu } from './shared/language_menu.js';
 import { saveFile } from './shared/save_file.js';
 import { ask, button, copy, element, icon, write } from './shared/ui.js';
 
@@ -68,6 +69,7 @@ export function createHead(root, lab) {
     element(
       'div',
       { class: 'head-group' },
+      languageMenu(lab),
       displayButton(lab),
       themeButton(),
       button('Help', showHelp, { icon: 'help', kind: 'quiet', bare: true, title: 'Keyboard shortcuts (?)' }),

@@ -41,16 +41,17 @@ function keepScene(lab) {
       found = null;
       session.drop(KEY);
     },
+    keep: () => lab.engine.kind === 'server' || keep().then((kept) => kept || !lab.state.unsaved),
   };
 
-  /* The scene with which the page began needs no copy. */
+  /* The scene with which the page began needs no copy. Returns whether the copy is there. */
   async function keep() {
     const { undo, unsaved, title, file, generation } = lab.state;
-    if (!undo) return session.drop(KEY);
-    const { code } = await lab.get('/api/link').catch(() => ({}));
-    if (generation !== lab.state.generation) return;
-    if (!code) return session.drop(KEY);
-    return session.set(KEY, { code, time: Date.now(), title, file, unsaved });
+    const { code } = undo ? await lab.get('/api/link').catch(() => ({})) : {};
+    if (generation !== lab.state.generation) return false;
+    if (code) session.set(KEY, { code, time: Date.now(), title, file, unsaved });
+    else session.drop(KEY);
+    return Boolean(code);
   }
 }
 
@@ -127,7 +128,7 @@ export function createRescue(root, lab) {
     reported = true;
   }
 
-  lab.rescue = { hasScene };
+  lab.rescue = { hasScene, keep: ours.keep };
   lab.on('restarted', () => {
     reported = false;
   });

@@ -7,6 +7,7 @@
  *   written(x): a number as text with 7 digits; '' for NaN */
 
 import { numberInput, numberOf, scale } from '../shared/controls.js';
+import { local, say, translated } from '../shared/language.js';
 import { element, gesture, gestures, toByte, toLinear, unique } from '../shared/ui.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
@@ -26,13 +27,13 @@ function numberBox(context, label, onvalue) {
   input.addEventListener('change', () => {
     if (input.value !== '' && !input.reportValidity()) return;
     if (input.value !== '') onvalue(numberOf(input));
-    else input.value = written(last);
+    else input.value = local(written(last));
   });
   return {
     input,
     set(value) {
       last = value;
-      input.value = written(value);
+      input.value = local(written(value));
     },
   };
 }
@@ -42,7 +43,7 @@ function slider(row, context, label, send) {
   const presses = gestures('slider');
   let dragged = false;
   const range = element('input', { type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label) });
-  const box = numberBox(context, `${label || context.name}, number`, (value) => {
+  const box = numberBox(context, say('{label}, number', { label: label || context.name }), (value) => {
     show(value);
     send(value, gesture('number'));
   });
@@ -55,7 +56,7 @@ function slider(row, context, label, send) {
   const show = (value) => {
     if (!ruler || value > ruler.max || value < ruler.min) fit();
     range.value = ruler.position(value);
-    range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
+    range.setAttribute('aria-valuetext', `${local(written(value))}${row.unit ? ` ${translated(row.unit)}` : ''}`);
     range.style.setProperty('--filled', `${(100 * range.value) / ruler.steps}%`);
   };
   range.addEventListener('pointerdown', presses.end);
@@ -193,7 +194,7 @@ function colour(row, context) {
   let mine = null;
   const picker = element('input', { type: 'color', ...attributes(context, `${context.name}, colour`) });
   const three = parts(row, context, CHANNELS, (label, send) => {
-    const part = numberBox(context, `${label}, linear`, send);
+    const part = numberBox(context, say('{label}, linear', { label }), send);
     return {
       ...part,
       set(x) {
@@ -322,7 +323,7 @@ function coating(row, context) {
     { class: 'input select', ...attributes(context) },
     ['none', ...row.designs, own].map((word) => element('option', { value: word, text: word })),
   );
-  const box = text(row, { ...context, name: `${context.name}, layers`, names: [] });
+  const box = text(row, { ...context, name: say('{label}, layers', { label: context.name }), names: [] });
   let last = 'none';
   const set = (value) => {
     last = value || 'none';

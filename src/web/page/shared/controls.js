@@ -7,6 +7,7 @@
  *   scale({min, max, step, logFrom})                         the positions of a slider */
 
 import { element, gesture, gestures, unique } from './elements.js';
+import { local, say, translated } from './language.js';
 import { digits } from './numbers.js';
 
 /* --- the input of a number field ---
@@ -30,10 +31,11 @@ function problem(input) {
   if (input.value.trim() === '') return '';
   const value = numberOf(input);
   const { min, max, step } = input.dataset;
-  if (!Number.isFinite(value)) return 'Enter a number, such as 1.5 or 1,5, without thousands separators.';
-  if (min !== undefined && value < Number(min)) return `Enter a number of at least ${min}.`;
-  if (max !== undefined && value > Number(max)) return `Enter a number of at most ${max}.`;
-  if (step === '1' && !Number.isInteger(value)) return 'Enter a whole number.';
+  if (!Number.isFinite(value)) return say('Enter a number, such as 1.5 or 1,5, without thousands separators.');
+  if (min !== undefined && value < Number(min))
+    return say('Enter a number of at least {least}.', { least: local(min) });
+  if (max !== undefined && value > Number(max)) return say('Enter a number of at most {most}.', { most: local(max) });
+  if (step === '1' && !Number.isInteger(value)) return say('Enter a whole number.');
   return '';
 }
 
@@ -70,7 +72,7 @@ export function numberInput({ min, max, step = 'any', class: name = 'input numer
   input.addEventListener('keydown', (event) => {
     const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!sign || event.ctrlKey || event.altKey || event.metaKey || input.disabled) return;
-    input.value = String(stepped(input, sign));
+    input.value = local(String(stepped(input, sign)));
     for (const type of ['input', 'change']) input.dispatchEvent(new Event(type, { bubbles: true }));
     event.preventDefault();
   });
@@ -79,7 +81,7 @@ export function numberInput({ min, max, step = 'any', class: name = 'input numer
 
 /* --- controls --- */
 
-const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
+const shown = (value) => (Number.isFinite(value) ? local(String(Number(Number(value).toPrecision(7)))) : '');
 
 function frame(label, input, unit) {
   input.id ||= unique('input');
@@ -193,7 +195,7 @@ export function slider({ label, min, max, step = (max - min) / 200, value, logFr
     step: 1,
     id: unique('range'),
   });
-  const box = numberInput({ value: shown(value), 'aria-label': `${label}, number` });
+  const box = numberInput({ value: shown(value), 'aria-label': say('{label}, number', { label: translated(label) }) });
   let mine = null;
   const presses = gestures('slider');
   let dragged = false;

@@ -1,11 +1,19 @@
 /* Elements, ids, memory and icons, for ui.js and its parts (see there).
+ * What elements show is translated (language.js): text, children that are strings, title, label and the like. Data is
+ * not: names of objects, paths, words of the scene file are in an element with translate: 'no', or in code, pre, samp.
  * exports: element, svg, replace, write, unique, gesture, gestures, memory, icon */
 
+import { translated } from './language.js';
+
 const SVG = 'http://www.w3.org/2000/svg';
+const SHOWN = new Set(['text', 'title', 'label', 'alt', 'placeholder', 'aria-label', 'aria-valuetext']);
+const WRITTEN = new Set(['textContent', 'title', 'placeholder', 'alt', 'ariaLabel']);
+const DATA = '[translate=no], code, pre, samp';
 let counter = 0;
 
-function assign(node, name, value) {
-  if (value === null || value === undefined || value === false) return;
+function assign(node, name, given, data) {
+  if (given === null || given === undefined || given === false) return;
+  const value = !data && SHOWN.has(name) ? translated(given) : given;
   if (name === 'text') node.textContent = value;
   else if (name === 'dataset') Object.assign(node.dataset, value);
   else if (name === 'style') for (const [key, what] of Object.entries(value)) node.style.setProperty(key, what);
@@ -15,9 +23,16 @@ function assign(node, name, value) {
   else node.setAttribute(name, value === true ? '' : value);
 }
 
+const parts = (children, data) =>
+  children
+    .flat(Infinity)
+    .filter((child) => child !== null && child !== undefined && child !== false)
+    .map((child) => (data ? child : translated(child)));
+
 function fill(node, properties, children) {
-  for (const [name, value] of Object.entries(properties || {})) if (name !== 'value') assign(node, name, value);
-  node.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  const data = properties?.translate === 'no' || node.matches(DATA);
+  for (const [name, value] of Object.entries(properties || {})) if (name !== 'value') assign(node, name, value, data);
+  node.append(...parts(children, data));
   if (properties && properties.value !== undefined) assign(node, 'value', properties.value);
   return node;
 }
@@ -26,15 +41,16 @@ export const element = (tag, properties, ...children) => fill(document.createEle
 export const svg = (tag, attributes, ...children) => fill(document.createElementNS(SVG, tag), attributes, children);
 
 export function replace(node, ...children) {
-  node.replaceChildren(
-    ...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false),
-  );
+  node.replaceChildren(...parts(children, Boolean(node.closest?.(DATA))));
   return node;
 }
 
 /* Assigns only what differs: an equal value would also cause a layout. */
 export function write(node, properties) {
-  for (const [name, value] of Object.entries(properties)) if (node[name] !== value) node[name] = value;
+  for (const [name, given] of Object.entries(properties)) {
+    const value = WRITTEN.has(name) && !node.closest?.(DATA) ? translated(given) : given;
+    if (node[name] !== value) node[name] = value;
+  }
 }
 
 export const unique = (prefix = 'id') => `${prefix}-${++counter}`;

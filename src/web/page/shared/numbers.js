@@ -1,5 +1,7 @@
-/* Numbers as text, and the sRGB curve. exports: digits, seconds, timeUnit, count, vector, toLinear, toByte
- * (see ui.js) */
+/* Numbers as text, with the decimal mark of the page's language, and the sRGB curve.
+ * exports: digits, seconds, timeUnit, count, vector, toLinear, toByte (see ui.js) */
+
+import { local, say } from './language.js';
 
 const MINUS = '\u2212';
 
@@ -8,12 +10,14 @@ export function digits(x, n = 4) {
   if (!Number.isFinite(x)) return x > 0 ? '∞' : `${MINUS}∞`;
   const size = Math.abs(x);
   if (size !== 0 && (size >= 1e7 || size < 1e-4))
-    return x
-      .toExponential(Math.max(0, n - 1))
-      .replace(/\.?0+e/, 'e')
-      .replace('e+', 'e')
-      .replace('-', MINUS);
-  return String(Number(x.toPrecision(n))).replace('-', MINUS);
+    return local(
+      x
+        .toExponential(Math.max(0, n - 1))
+        .replace(/\.?0+e/, 'e')
+        .replace('e+', 'e')
+        .replace('-', MINUS),
+    );
+  return local(String(Number(x.toPrecision(n))).replace('-', MINUS));
 }
 
 /* The unit for a list of times in s, and the factor to it. */
@@ -25,12 +29,14 @@ export function timeUnit(times) {
 
 export function seconds(s) {
   if (s === null || s === undefined || !Number.isFinite(s)) return '–';
-  if (s < 1e-3) return `${digits(s * 1e6, 3)} µs`;
-  if (s < 1) return `${digits(s * 1e3, 3)} ms`;
-  if (s < 60) return `${digits(s, 3)} s`;
+  if (s < 1e-3) return say('{time} µs', { time: digits(s * 1e6, 3) });
+  if (s < 1) return say('{time} ms', { time: digits(s * 1e3, 3) });
+  if (s < 60) return say('{time} s', { time: digits(s, 3) });
   const rounded = Math.round(s);
-  if (rounded < 3600) return `${Math.floor(rounded / 60)} min ${String(rounded % 60).padStart(2, '0')} s`;
-  return `${Math.floor(rounded / 3600)} h ${String(Math.floor(rounded / 60) % 60).padStart(2, '0')} min`;
+  const two = (whole) => String(whole).padStart(2, '0');
+  const minutes = Math.floor(rounded / 60);
+  if (rounded < 3600) return say('{minutes} min {seconds} s', { minutes, seconds: two(rounded % 60) });
+  return say('{hours} h {minutes} min', { hours: Math.floor(rounded / 3600), minutes: two(minutes % 60) });
 }
 
 export function count(n) {
@@ -40,7 +46,7 @@ export function count(n) {
   return `${digits(n / scale, 3)}\u2009${unit}`;
 }
 
-export const vector = (values, n = 4) => (values || []).map((x) => digits(x, n)).join(', ');
+export const vector = (values, n = 4) => (values || []).map((x) => digits(x, n)).join(local('.') === ',' ? '; ' : ', ');
 
 export const toLinear = (byte) => (byte / 255 <= 0.04045 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
 
