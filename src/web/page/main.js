@@ -10,6 +10,7 @@ import { createNotes } from './shared/notes.js';
 import { createRescue } from './rescue.js';
 import { createDisplay } from './shared/display.js';
 import { createKeys } from './keys.js';
+import { createTips } from './shared/tips.js';
 import { orbitTool } from './view/camera_moves.js';
 import { lightTool } from './view/point_handles.js';
 import { cameraBox } from './view/camera_box.js';
@@ -46,6 +47,7 @@ async function start() {
   createDisplay(lab);
   createHead(at('head'), lab);
   createKeys(lab);
+  createTips();
   const loaded = await Promise.allSettled(modules.map((load) => load()));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
