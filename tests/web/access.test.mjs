@@ -5,7 +5,7 @@ async function everyPanel(t, how) {
   const name = `${how.width}x${how.height}, ${how.dark ? 'dark' : 'light'}`;
   const lab = await t.lab(how.scene ?? 'scenes/rod.yaml');
   const screen = await t.open(lab, how);
-  const tabs = await screen.page.getByRole('tablist', { name: 'Panels' }).getByRole('tab').allInnerTexts();
+  const tabs = await screen.panelNames();
   t.check(tabs.length > 5, `${name}: ${tabs.length} panels`);
   for (const tab of tabs) {
     await screen.showPanel(tab);

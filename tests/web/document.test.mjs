@@ -240,7 +240,7 @@ export const cases = {
   'the page reopens on every panel': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
-    const names = await screen.page.getByRole('tablist', { name: 'Panels' }).getByRole('tab').allInnerTexts();
+    const names = await screen.panelNames();
     for (const name of ['Parameters', 'Objects', 'Machine']) {
       await screen.showPanel(name);
       await screen.load();

@@ -130,18 +130,31 @@ export const cases = {
     await tabTo(t, screen, '[role=tab]');
     await checkFocusShows(t, screen, 'the tabs');
     await screen.page.keyboard.press('Home');
-    const names = await screen.page.getByRole('tab').allInnerTexts();
-    for (let i = 0; i < names.length; i++) {
-      const shown = await screen.page.getByRole('tabpanel').getAttribute('aria-labelledby');
-      const name = await screen.page.evaluate((id) => document.getElementById(id).innerText, shown);
-      t.equal(name, names[i], 'the panel of the tab');
-      await screen.page.keyboard.press('ArrowRight');
+    const { page } = screen;
+    const groups = page.getByRole('tablist', { name: 'Panels' }).getByRole('tab');
+    const focus = () => page.evaluate(() => document.activeElement.innerText);
+    const shown = async () => {
+      const frames = await page.getByRole('tabpanel').all();
+      const id = await frames.at(-1).getAttribute('aria-labelledby');
+      return page.locator(`#${id}`).innerText();
+    };
+    const names = [];
+    for (const group of await groups.allInnerTexts()) {
+      t.equal(await focus(), group, 'the tab that an arrow key comes to');
+      const inner = page.getByRole('tablist', { name: group, exact: true }).getByRole('tab');
+      const titles = await inner.allInnerTexts();
+      if (titles.length) await page.keyboard.press('Tab');
+      if (titles.length) await page.keyboard.press('Home');
+      for (const title of titles) {
+        t.equal([await focus(), await shown()], [title, title], `the panel of the tab in ${group}`);
+        await page.keyboard.press('ArrowRight');
+      }
+      if (titles.length) await page.keyboard.press('Shift+Tab');
+      names.push(...(titles.length ? titles : [await shown()]));
+      await page.keyboard.press('ArrowRight');
     }
-    t.equal(
-      await screen.page.evaluate(() => document.activeElement.innerText),
-      names[0],
-      'the panel after the last one',
-    );
+    t.equal(names, await screen.panelNames(), 'panels that keys show');
+    t.equal(await focus(), await groups.first().innerText(), 'the tab after the last one');
   },
 
   'the shortcuts are listed': async (t) => {

@@ -204,7 +204,19 @@ export class Screen {
     await this.until((input) => input.checked, await radio.elementHandle());
   }
 
+  /** The titles of all panels, in the order of the tabs. */
+  panelNames() {
+    return this.page.evaluate(() =>
+      [...document.querySelectorAll('.panel-frame:not(:has(.tabs)) > h2')].map((title) => title.textContent),
+    );
+  }
+
+  /** Chooses a panel, by the tab of its group first where it has one. */
   async showPanel(name) {
+    const group = await this.page
+      .locator('.inner > .tab', { hasText: name })
+      .evaluateAll(([tab]) => tab?.closest('[role=tabpanel]').getAttribute('aria-labelledby'));
+    if (group) await this.page.locator(`#${group}`).click();
     await this.tab(name).click();
     await this.page.getByRole('tabpanel', { name }).waitFor();
   }

@@ -54,6 +54,7 @@ async function withPage(t, address, act, init = () => {}) {
 
 /** Saves the scene of a page, or of a frame in it, as an HTML file. */
 async function savePage(page, where, file) {
+  await where.getByRole('tab', { name: 'Build' }).click();
   await where.getByRole('tab', { name: 'Objects' }).click();
   await where.getByRole('button', { name: 'Share …' }).click();
   const [download] = await Promise.all([

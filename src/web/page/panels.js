@@ -1,4 +1,6 @@
-/* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
+/* The panels next to the image, in groups by what a person does, and the splitter between them. The first row of tabs has
+ * the groups, and the panels that stand alone; the second row has the panels of the chosen group. A panel is created
+ * when it is first shown.
  * exports: createPanels(side, splitter, workspace, panels, lab) -> {select(id), chosen(), reveal()}
  *   reveal(): shows the image if a wide panel covers it
  *
@@ -9,7 +11,7 @@
  *            begins each rule with .panel-ID; a site has all style sheets in its page, as #styles (src/web/site)
  * The panel's title is its h2: headings in it begin at h3. */
 
-import { element, memory, notice, replace } from './shared/ui.js';
+import { element, icon, memory, notice, replace } from './shared/ui.js';
 
 const NARROWEST = 300;
 const SHORTEST = 120;
@@ -17,24 +19,25 @@ const IMAGE_WIDTH = 360; /* what remains for the image and the splitter */
 const IMAGE_HEIGHT = 240;
 const STEP = 24;
 const FIRST = 'params';
+const ICONS = { lessons: 'book', compare: 'halves' };
+const GROUPS = [
+  { id: 'build', title: 'Build', icon: 'blocks', panels: ['edit', 'params', 'slime'] },
+  { id: 'rays', title: 'Rays', icon: 'prism', panels: ['bench', 'lens', 'pixel'] },
+  { id: 'research', title: 'Research', icon: 'flask', panels: ['studies', 'machine'] },
+];
 
 export function createPanels(side, splitter, workspace, panels, lab) {
-  const list = element('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Panels' });
+  const room = element('div', { class: 'panel-room', id: 'panels', tabindex: '-1' });
   const entries = new Map(panels.map((panel) => [panel.id, makeEntry(panel)]));
+  const places = makePlaces(entries);
+  const list = makeList('Panels', places);
   let chosen = null;
 
-  list.append(...[...entries.values()].map((entry) => entry.tab));
-  list.addEventListener('keydown', key);
+  room.append(...places.map((place) => place.frame));
   side.id = 'side';
-  side.append(
-    list,
-    element(
-      'div',
-      { class: 'panel-room', id: 'panels', tabindex: '-1' },
-      [...entries.values()].map((entry) => entry.frame),
-    ),
-  );
+  side.append(list, room);
   createSplitter(splitter, workspace);
+  keepFitting(list);
   for (const entry of entries.values()) containFailure(entry, () => entry.panel.start?.(lab));
   select(
     entries.has(memory.get('panel'))
@@ -46,37 +49,55 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   function makeEntry(panel) {
     if (panel.css && !document.getElementById('styles'))
       document.head.append(element('link', { rel: 'stylesheet', href: panel.css }));
-    const tab = element('button', {
-      type: 'button',
-      role: 'tab',
-      class: 'tab',
-      id: `tab-${panel.id}`,
-      'aria-controls': `panel-${panel.id}`,
-      'aria-selected': 'false',
-      tabindex: '-1',
-      onclick: () => select(panel.id),
-      text: panel.title,
-    });
+    const open = () => select(panel.id);
     const root = element('section', { class: `panel panel-${panel.id}`, tabindex: '0', 'aria-label': panel.title });
-    const frame = element(
+    const content = [element('h2', { class: 'visually-hidden', text: panel.title }), root];
+    return { panel, root, open, created: false, ...makeTab(panel.id, panel.title, ICONS[panel.id], open, content) };
+  }
+
+  /* What the first row chooses from: groups, and panels without a group. */
+  function makePlaces(entries) {
+    const places = new Set();
+    for (const [id, entry] of entries) {
+      const about = GROUPS.find((group) => group.panels.includes(id));
+      if (about && !entry.group) makeGroup(about, entries);
+      places.add(entry.group ?? entry);
+    }
+    return [...places];
+  }
+
+  function makeGroup({ id, title, icon: drawing, panels: ids }, entries) {
+    const members = ids.filter((each) => entries.has(each)).map((each) => entries.get(each));
+    const key = `panel.${id}`;
+    const last = members.find((member) => member.panel.id === memory.get(key)) ?? members[0];
+    const open = () => group.last.open();
+    const content = [makeList(title, members), members.map((member) => member.frame)];
+    const group = { members, last, key, open, ...makeTab(id, title, drawing, open, content) };
+    for (const member of members) member.group = group;
+    return group;
+  }
+
+  /* A row of tabs, which the arrow keys go along. */
+  function makeList(label, shown) {
+    const row = element(
       'div',
-      {
-        role: 'tabpanel',
-        class: 'panel-frame',
-        id: `panel-${panel.id}`,
-        'aria-labelledby': `tab-${panel.id}`,
-        hidden: true,
-      },
-      element('h2', { class: 'visually-hidden', text: panel.title }),
-      root,
+      { class: label === 'Panels' ? 'tabs' : 'tabs inner', role: 'tablist', 'aria-label': label },
+      shown.map((each) => each.tab),
     );
-    return { panel, tab, root, frame, created: false };
+    row.addEventListener('keydown', (event) => {
+      const now = shown.findIndex((each) => each.tab === event.target);
+      const to = { ArrowRight: now + 1, ArrowLeft: now - 1, Home: 0, End: shown.length - 1 }[event.key];
+      if (to === undefined || now < 0) return;
+      const next = shown[(to + shown.length) % shown.length];
+      next.open();
+      next.tab.focus();
+      event.preventDefault();
+    });
+    return row;
   }
 
   function show(entry, on) {
-    entry.tab.setAttribute('aria-selected', String(on));
-    entry.tab.tabIndex = on ? 0 : -1;
-    entry.frame.hidden = !on;
+    mark(entry, on);
     containFailure(entry, () => {
       if (on && !entry.created) {
         entry.created = true;
@@ -101,9 +122,16 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     if (id === chosen || !entries.has(id)) return;
     if (chosen) show(entries.get(chosen), false);
     chosen = id;
-    workspace.classList.toggle('wide', Boolean(entries.get(id).panel.wide));
-    show(entries.get(id), true);
-    entries.get(id).tab.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    const entry = entries.get(id);
+    workspace.classList.toggle('wide', Boolean(entry.panel.wide));
+    for (const place of places) if (place.members) mark(place, place === entry.group);
+    show(entry, true);
+    if (entry.group) {
+      entry.group.last = entry;
+      memory.set(entry.group.key, id);
+    }
+    fit(list);
+    for (const { tab } of [entry, entry.group ?? entry]) tab.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     memory.set('panel', id);
     lab.emit('panel', id);
   }
@@ -111,23 +139,47 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   function reveal() {
     if (entries.get(chosen)?.panel.wide) select(FIRST);
   }
+}
 
-  function key(event) {
-    const ids = [...entries.keys()];
-    const now = ids.indexOf(chosen);
-    const to = {
-      ArrowRight: now + 1,
-      ArrowLeft: now - 1,
-      ArrowDown: now + 1,
-      ArrowUp: now - 1,
-      Home: 0,
-      End: ids.length - 1,
-    }[event.key];
-    if (to === undefined) return;
-    select(ids[(to + ids.length) % ids.length]);
-    entries.get(chosen).tab.focus();
-    event.preventDefault();
+function makeTab(id, title, drawing, onclick, content) {
+  const tab = element(
+    'button',
+    {
+      type: 'button',
+      role: 'tab',
+      class: 'tab',
+      id: `tab-${id}`,
+      'aria-controls': `panel-${id}`,
+      'aria-selected': 'false',
+      tabindex: '-1',
+      onclick,
+    },
+    drawing ? icon(drawing) : null,
+    element('span', { text: title }),
+  );
+  const properties = { role: 'tabpanel', class: 'panel-frame', id: `panel-${id}`, 'aria-labelledby': tab.id };
+  return { tab, frame: element('div', { ...properties, hidden: true }, ...content) };
+}
+
+function mark({ tab, frame }, on) {
+  tab.setAttribute('aria-selected', String(on));
+  tab.tabIndex = on ? 0 : -1;
+  frame.hidden = !on;
+}
+
+/* Shows as much of the tabs as fits in one row: icons and words, words, or icons and the word of the chosen tab. */
+function fit(list) {
+  for (const how of ['full', 'words', 'icons']) {
+    list.dataset.fit = how;
+    if (list.scrollWidth <= list.clientWidth) return;
   }
+}
+
+function keepFitting(list) {
+  const again = () => fit(list);
+  new ResizeObserver(again).observe(list);
+  new MutationObserver(again).observe(list, { subtree: true, characterData: true, childList: true });
+  document.fonts?.ready.then(again);
 }
 
 /* The splitter moves the left edge of the panels, or the upper edge if they are under the image (layout.css). */
