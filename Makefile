@@ -111,7 +111,7 @@ fit := $(wildcard src/study/fit/*.c)
 program := $(wildcard src/cli/*.c)
 mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
-page := $(sort $(wildcard $(foreach e,html css js json svg,src/web/page/*.$(e) src/web/page/*/*.$(e))))
+page := $(sort $(wildcard $(foreach e,html css js json svg jpg,src/web/page/*.$(e) src/web/page/*/*.$(e))))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c cancel.c number.c below.c float_environment.c \
   array.c text.c os_confine.c os_process.c thread_team.c worker_pool.c json_build.c)
 objects_of = $(1:src/%.c=$(build)/obj/%.o)

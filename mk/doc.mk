@@ -43,5 +43,10 @@ site: $(build)/cuvette $(build)/man/made wasm | site-tools
 	@python3 -B src/web/site/build.py build/wasm $(build)/site
 	@cp $(build)/site/laboratory.html $(build)/live.html
 	@echo 'site: $(build)/site/index.html; the laboratory in one file: $(build)/site/laboratory.html'
+# Committed, since the program embeds those of the lessons: to be made again when a lesson or its scene changes.
+.PHONY: page-images
+## page-images: the gallery's images of lessons, and the site's first image
+page-images: $(build)/cuvette
+	@python3 -B src/web/site/images.py $(build)/cuvette
 site-tools: doc-tools
 	@command -v esbuild >/dev/null || { echo 'site: esbuild is not installed; run: make setup-site' >&2; exit 1; }

@@ -3,7 +3,8 @@
 # with their paths in FOLDER. The assembler's .incbin reads the bytes; gcc and clang accept the same directive.
 set -euo pipefail
 declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
-    [js]='text/javascript; charset=utf-8' [json]='application/json' [svg]='image/svg+xml')
+    [js]='text/javascript; charset=utf-8' [json]='application/json' [svg]='image/svg+xml'
+    [jpg]='image/jpeg')
 
 echo '#include "web/lab.h"'
 folder=$1 number=0 rows=
@@ -12,7 +13,7 @@ for file in "$@"; do
     name=${file#"$folder/"} size=$(stat -c %s "$file")
     type=${types[${name##*.}]-}
     [[ $type && $name =~ ^([a-z0-9_-]+/)*[a-z0-9_.-]+$ ]] || {
-        echo "embed.sh: $file is not an html, css, js, json or svg file with a plain name" >&2
+        echo "embed.sh: $file is not an html, css, js, json, svg or jpg file with a plain name" >&2
         exit 1
     }
     echo "__asm__(\".pushsection .rodata\\npage_file_$number: .incbin \\\"$file\\\"\\n.byte 0\\n.popsection\");"

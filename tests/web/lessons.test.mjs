@@ -16,8 +16,16 @@ export const cases = {
   'a laboratory without a scene starts with the gallery; the critical angle is two actions away': async (t) => {
     const lab = await t.lab();
     const screen = await t.open(lab, { width: 1366, height: 768 });
+    const rendered = [];
+    screen.page.on('request', (request) => request.url().includes('/thumbnail') && rendered.push(request.url()));
+    await screen.load();
     await panel(screen).locator('.lesson-card').nth(7).waitFor();
-    await screen.until(() => [...document.querySelectorAll('.lesson-card img')].some((img) => img.naturalWidth > 100));
+    await screen.until(() =>
+      [...document.querySelectorAll('.lesson-card img')].every(
+        (image) => image.getBoundingClientRect().top > innerHeight || image.naturalWidth > 100,
+      ),
+    );
+    t.none(rendered, 'images of lessons that the page lacks: run make page-images');
     await t.image(screen, 'gallery-light');
     await t.axe(screen, 'gallery');
     await screen.page.getByRole('button', { name: /When water becomes a mirror/ }).click();

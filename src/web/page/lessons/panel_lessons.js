@@ -14,12 +14,25 @@ let wanted = ''; /* the lesson that the page's address names */
 
 const cover = (on) => document.getElementById('workspace').classList.toggle('wide', on);
 
+/* The page has small images of the program's lessons (make page-images), in a page of one file as an element; for a
+ * folder's own lessons the laboratory renders one. */
+function cardImage(lab, one) {
+  const rendered = () => thumbnail(lab, `/api/lessons/${encodeURIComponent(one.name)}/thumbnail.jpg`);
+  if (one.own && lab.engine.kind === 'server') return rendered();
+  const kept = document.getElementById('cuvette-images');
+  const bytes = kept && JSON.parse(kept.textContent)[one.name];
+  const node = element('img', { class: 'thumbnail', alt: '', width: 240, height: 180, loading: 'lazy' });
+  node.addEventListener('error', () => node.replaceWith(rendered()), { once: true });
+  node.src = bytes ? `data:image/jpeg;base64,${bytes}` : `lessons/${encodeURIComponent(one.name)}.jpg`;
+  return node;
+}
+
 function card(lab, one) {
   if (one.error) return notice(`${one.file}: ${one.error.error}`, { kind: 'warning', remedy: one.error.remedy });
   return element(
     'button',
     { type: 'button', class: 'lesson-card', lang: one.language, onclick: () => choose(lab, one) },
-    thumbnail(lab, `/api/lessons/${encodeURIComponent(one.name)}/thumbnail.jpg`),
+    cardImage(lab, one),
     element('span', { class: 'lesson-card-title', text: one.title }),
     element('span', { class: 'lesson-card-question', text: one.question }),
   );
