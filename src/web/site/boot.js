@@ -11,6 +11,17 @@ const ONE_FILE = '../laboratory.html';
 
 const part = (name) => document.getElementById(`cuvette-${name}`);
 const opensLink = part('scene') || /^#(scene|lesson)=/.test(location.hash);
+const opensFirst = !opensLink && !new URLSearchParams(location.search).has('scene');
+const MEGABYTE = 1e6;
+
+/* Under the first image (bundle.py), which is shown until the engine has rendered one (view.js). */
+function showProgress(loaded, all) {
+  const place = document.querySelector('.first-progress');
+  if (!place || !all) return;
+  const [of, is] = [all, loaded].map((bytes) => (bytes / MEGABYTE).toFixed(1));
+  place.querySelector('progress').value = loaded / all;
+  place.querySelector('span').textContent = `${is} / ${of} MB`;
+}
 
 /* fetch decodes base64 faster than a script could. */
 async function unpack(name) {
@@ -46,7 +57,11 @@ if (!oneFile && location.protocol === 'file:')
 else {
   if (oneFile) keepDocument();
   else globalThis.cuvetteDocument = loadDocument;
-  globalThis.cuvetteEngine = { scene: opensLink ? null : FIRST_SCENE, ...(oneFile && partsOfPage()) };
+  globalThis.cuvetteEngine = {
+    scene: opensLink ? null : FIRST_SCENE,
+    ...(oneFile ? partsOfPage() : { packed: true, progress: showProgress }),
+  };
+  document.documentElement.toggleAttribute('data-first', opensFirst);
   globalThis.cuvetteEngine.started = startWorker();
   globalThis.cuvetteEngine.started.catch(() => undefined); // the page reports it
 }

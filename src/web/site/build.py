@@ -37,17 +37,20 @@ def write_folder(parts, wasm, folder):
     head = bundle.script(parts['boot']) + '<link rel="modulepreload" href="lab.js" />\n'
     write(folder / 'index.html', bundle.document(head, '<script type="module" src="lab.js"></script>\n'))
     write(folder / 'lab.js', parts['lab'])
-    write(folder / 'engine/files.json', parts['files'])
-    for set_name in SETS:
-        for name in ENGINE:
-            write(folder / 'engine' / set_name / name, engine_part(wasm, set_name, name))
+    for path in bundle.lesson_images():
+        write(folder / 'lessons' / path.name, path.read_bytes())
+    engine = {'files.json': parts['files'].encode()}
+    engine |= {f'{set_name}/{name}': engine_part(wasm, set_name, name) for set_name in SETS for name in ENGINE}
+    for name, content in engine.items():
+        write(folder / 'engine' / name, content)
+        write(folder / f'engine/{name}.packed', bundle.packed(content))
 
 
 def one_file(parts, wasm):
     """laboratory.html, with the engine for vectors: every browser that can unpack it has them."""
     content = {'worker': engine_part(wasm, SETS[0], ENGINE[0]), 'module': engine_part(wasm, SETS[0], ENGINE[1]),
                'files': parts['files'].encode()}
-    end = ''.join(bundle.part_element(name, part) for name, part in content.items())
+    end = ''.join(bundle.part_element(name, part) for name, part in content.items()) + bundle.image_element()
     end += bundle.script(parts['lab'], ' type="module"') + bundle.script(parts['boot'])
     return bundle.document('', end)
 
@@ -66,10 +69,10 @@ def report(title, paths, base):
 
 
 def report_sizes(folder):
-    loaded = [folder / 'laboratory' / name for name in ('index.html', 'lab.js', 'engine/files.json')]
+    loaded = [folder / 'laboratory' / name for name in ('index.html', 'lab.js', 'engine/files.json.packed')]
     sums = [
         report(f'loaded before the first image, {set_name}:',
-               loaded + sorted((folder / 'laboratory/engine' / set_name).iterdir()), folder) for set_name in SETS
+               loaded + sorted((folder / 'laboratory/engine' / set_name).glob('*.packed')), folder) for set_name in SETS
     ] + [report('in one file:', [folder / 'laboratory.html'], folder)]
     if max(sums) > LIMIT:
         raise Trouble(f'{max(sums):,} bytes are loaded before the first image, more than {LIMIT:,}; reduce them')

@@ -20,6 +20,9 @@ POLICY = ("default-src 'none'; img-src 'self' data: blob:; style-src 'self' 'uns
 META = (f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />\n'
         '<meta name="cuvette-engine" content="browser" />')
 TARGET = '--target=es2022'
+# Shown until the engine has rendered an image (view.js), if the page opens the site's first scene (boot.js).
+FIRST = ('<img class="first-image" alt="" width="800" height="600" src="data:image/jpeg;base64,{}" />'
+         '<p class="first-progress"><progress aria-label="Loading the laboratory"></progress><span></span></p>')
 
 
 class Trouble(Exception):
@@ -90,14 +93,29 @@ def document(head, end):
     text = replaced(text, r' *<script type="module" src="main\.js"></script>\n', '')
     styles = f'{head}<style id="styles">{style()}</style>\n'
     text = replaced(text, r' *<link rel="stylesheet" href="[^"]+" />\n', styles)
+    first = base64.b64encode((Path(__file__).parent / 'first.jpg').read_bytes()).decode()
+    text = replaced(text, r'(?<=<section class="view" id="view" aria-label="Image">)', FIRST.format(first))
     text = replaced(text, r'<meta charset="utf-8" />', f'<meta charset="utf-8" />\n{META}')
     return replaced(text, r' *</body>', f'{end}</body>')
 
 
+def packed(content):
+    return gzip.compress(content, 9, mtime=0)
+
+
 def part_element(name, content):
     """An element that holds a part, which boot.js unpacks."""
-    packed = base64.b64encode(gzip.compress(content, 9, mtime=0)).decode()
-    return f'<script type="text/plain" id="cuvette-{name}">{packed}</script>\n'
+    return f'<script type="text/plain" id="cuvette-{name}">{base64.b64encode(packed(content)).decode()}</script>\n'
+
+
+def lesson_images():
+    return sorted((PAGE / 'lessons').glob('*.jpg'))
+
+
+def image_element():
+    """An element that holds the images of lessons (panel_lessons.js)."""
+    images = {path.stem: base64.b64encode(path.read_bytes()).decode() for path in lesson_images()}
+    return f'<script type="application/json" id="cuvette-images">{json.dumps(images)}</script>\n'
 
 
 def script(text, kind=''):

@@ -5,6 +5,8 @@
  *   module    the Response with its module, which needs 128-bit vectors         engine/simd128/cuvette.wasm, or plain
  *   files     the laboratory's folder: {NAME: text or {base64}}                 engine/files.json
  *   scene     the file that is opened; the page's address may name another (?scene=NAME); null: none
+ *   packed    whether the files of engine/ are also there compressed by gzip, as NAME.packed: a host need not compress
+ *   progress  called with the bytes of the module that are loaded, and with all, 0 if that is unknown
  *   workers   workers that render tiles; default: one for each processor
  * exports: startWorker() -> promise of the worker, after its first message was sent; an error may have a remedy;
  *                           worker.early: messages from it that came before a listener */
@@ -24,8 +26,8 @@ export async function startWorker() {
   const site = globalThis.cuvetteEngine ?? {};
   const set = hasVectors() ? 'simd128' : 'plain';
   if (site.module && set === 'plain') throw new Error('this browser is too old for the laboratory in one file');
-  const compiled = compile(site.module ?? part(`${set}/cuvette.wasm`)); /* while the script is loaded */
-  const script = await site.worker;
+  const compiled = compile(site.module ?? part(`${set}/cuvette.wasm`, site.progress)); /* while the script is loaded */
+  const script = await (site.worker ?? (packed() ? part(`${set}/worker.js`).then((reply) => reply.text()) : null));
   const worker = new Worker(script ? textAddress(script) : absolute(`${set}/worker.js`));
   worker.early = [];
   worker.onmessage = ({ data }) => worker.early.push(data);
@@ -46,21 +48,32 @@ export async function startWorker() {
 /* A page that is opened as a file may start workers from its own text only. */
 const textAddress = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
 
-async function part(name) {
-  const reply = await fetch(absolute(name)).catch(() => null);
-  if (reply?.ok) return reply;
+const packed = () => Boolean(globalThis.cuvetteEngine?.packed && 'DecompressionStream' in globalThis);
+
+async function part(name, progress) {
+  const reply = await fetch(absolute(packed() ? `${name}.packed` : name)).catch(() => null);
+  if (reply?.ok) return new Response(contentOf(reply, progress), { headers: { 'Content-Type': 'application/wasm' } });
   const why = new Error(`engine/${name} cannot be loaded${reply ? `: status ${reply.status}` : ''}`);
   why.remedy = location.protocol === 'file:' ? FILE_REMEDY : 'check the connection, and reload the page';
   throw why;
 }
 
-/* Compiles the module while it is loaded, once for all workers. A server need not know the type of the file. */
-async function compile(promised) {
-  const reply = await promised;
-  return reply.headers.get('Content-Type') === 'application/wasm'
-    ? WebAssembly.compileStreaming(reply)
-    : WebAssembly.compile(await reply.arrayBuffer());
+function contentOf(reply, progress = () => {}) {
+  const all = reply.headers.has('Content-Encoding') ? 0 : Number(reply.headers.get('Content-Length'));
+  let loaded = 0;
+  const counter = new TransformStream({
+    transform(piece, out) {
+      loaded += piece.length;
+      progress(loaded, all);
+      out.enqueue(piece);
+    },
+  });
+  const counted = reply.body.pipeThrough(counter);
+  return packed() ? counted.pipeThrough(new DecompressionStream('gzip')) : counted;
 }
+
+/* Compiles the module while it is loaded, once for all workers. */
+const compile = async (promised) => WebAssembly.compileStreaming(await promised);
 
 function bytesOf(content) {
   if (typeof content === 'string') return new TextEncoder().encode(content);

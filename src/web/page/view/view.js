@@ -95,6 +95,7 @@ export function createView(root, lab) {
   Object.defineProperty(view, 'chosen', { get: () => toolbar.chosen() });
 
   root.append(toolbar.node, stage);
+  keepFirstImage(root, stage, lab);
   const explain = () => {
     const { state } = lab;
     if (!state) return;
@@ -148,6 +149,17 @@ export function createView(root, lab) {
     }
     return named.get(name);
   }
+}
+
+/* A site has an image in its page (src/web/site/bundle.py), which is shown until the engine has rendered one. */
+function keepFirstImage(root, stage, lab) {
+  const early = root.querySelectorAll('.first-image, .first-progress');
+  stage.prepend(...early);
+  const end = lab.on('image', () => {
+    if (!lab.image) return;
+    for (const node of early) node.remove();
+    end();
+  });
 }
 
 /* --- the placement of the image on the stage: fitted, or zoomed about a point --- */
