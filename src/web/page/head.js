@@ -26,7 +26,7 @@ export function createHead(root, lab) {
   const reset = button('Reset all', () => resetAll(lab), {
     icon: 'reset',
     kind: 'quiet',
-    title: 'Reset all values to those of the opened scene',
+    title: 'Put everything back as it was when the scene was opened',
   });
   root.append(
     element('div', { class: 'brand' }, icon('cuvette'), element('span', { text: 'Cuvette' })),
@@ -36,27 +36,27 @@ export function createHead(root, lab) {
       'div',
       { class: 'head-group', role: 'group', 'aria-label': 'Save and copy' },
       button('PNG', () => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png'), {
-        icon: 'image',
+        icon: 'download',
         kind: 'quiet',
-        title: 'Save the final image as PNG',
+        title: 'Save the image as a PNG file: exact, and Cuvette opens it again as a scene',
         'aria-label': 'Save PNG',
       }),
       button('JPEG', () => saveFile(lab, '/api/image.jpg?wait=1', 'jpg'), {
-        icon: 'image',
+        icon: 'download',
         kind: 'quiet',
-        title: 'Save the final image as JPEG',
+        title: 'Save the image as a JPEG file: small, for a web page or a letter',
         'aria-label': 'Save JPEG',
       }),
       button('Video', () => saveVideo(lab), {
         icon: 'video',
         kind: 'quiet',
-        title: 'Save a video: a parameter that changes, or the slime',
+        title: 'Save a video: something that changes step by step, or the slime',
         'aria-label': 'Save video',
       }),
       button('Scene', () => copyScene(lab), {
         icon: 'copy',
         kind: 'quiet',
-        title: 'Copy the scene file',
+        title: 'Copy the scene as text',
         'aria-label': 'Copy scene file',
       }),
       button('Command', () => copyCommand(lab), {

@@ -70,7 +70,7 @@ export function createBenchFan(lab, bench, changed) {
     element(
       'div',
       { class: 'buttons' },
-      button('Trace', trace, { icon: 'beam', small: true, kind: 'primary' }),
+      button('Trace', trace, { icon: 'trace', small: true, kind: 'primary' }),
       button('Along the beam', () => aim(alongBeam()), { small: true }),
       button('Across the view', () => aim(acrossView()), { small: true }),
     ),
@@ -213,9 +213,12 @@ export function createBenchFan(lab, bench, changed) {
       element(
         'div',
         { class: 'buttons' },
-        button('Save drawing', () => saveReply(lab, address, `${lab.name()}-fan.svg`), { icon: 'save', small: true }),
+        button('Save drawing', () => saveReply(lab, address, `${lab.name()}-fan.svg`), {
+          icon: 'download',
+          small: true,
+        }),
         button('Save table', () => saveReply(lab, `/api/fan.csv?${question(false)}`, `${lab.name()}-fan.csv`), {
-          icon: 'save',
+          icon: 'download',
           small: true,
         }),
       ),

@@ -49,8 +49,8 @@ function start(lab) {
     order: 45,
     cursor: 'crosshair',
     hint:
-      'Click a beam to choose it; drag its start or target, with Shift nearer and farther; with Measure on, set ' +
-      'points',
+      'Aim beams of light, and measure: click a beam, then drag its start or its target. ' +
+      'Shift: nearer and farther',
     chosen() {
       lab.panels?.select('bench');
       handles.show();

@@ -94,7 +94,7 @@ function starters(lab) {
 
 function createControls(lab, renew, draw) {
   const node = element('div', { class: 'lens-controls' });
-  const again = button('Renew', renew, { icon: 'reset' });
+  const again = button('Renew', renew, { icon: 'refresh' });
   const auto = checkbox('after each change', true, (on) => {
     state.auto = on;
     lens.check();
@@ -113,7 +113,7 @@ function createControls(lab, renew, draw) {
     button(
       `Save ${ending.toUpperCase()}`,
       () => saveReply(lab, `/api/lens${ending === 'csv' ? '.csv' : ''}${query()}`, `${lab.name()}-lens.${ending}`),
-      { icon: 'save', small: true },
+      { icon: 'download', small: true },
     );
   const systems = element('div', { class: 'lens-choice' });
   const waves = element('div', { class: 'lens-choice' });

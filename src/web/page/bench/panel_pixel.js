@@ -51,7 +51,7 @@ function start(lab) {
     icon: 'pixel',
     order: 40,
     cursor: 'crosshair',
-    hint: 'Inspect the rays of a pixel: click it, or move with the arrow keys',
+    hint: 'See where the light of a pixel comes from: click it (arrow keys: the next pixel)',
     chosen: () => lab.panels?.select('pixel'),
     down: (point) => {
       if (point.inside) question.ask(point.x, point.y);
@@ -90,7 +90,7 @@ function chooser(lab) {
   const x = number({ label: 'Pixel x', min: 0, step: 1, onchange: go });
   const y = number({ label: 'y', min: 0, step: 1, onchange: go });
   const again = button('Trace again', () => question.again(), {
-    icon: 'reset',
+    icon: 'refresh',
     small: true,
     title: 'Trace the rays of this pixel for the current camera and scene',
   });
@@ -201,7 +201,7 @@ function openDrawing(lab, { x, y }) {
     'div',
     { class: isDark() ? 'trace-drawing dark' : 'trace-drawing' },
     image,
-    button('Save drawing', () => saveReply(lab, address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
+    button('Save drawing', () => saveReply(lab, address, `pixel-${x}-${y}.svg`), { icon: 'download', small: true }),
   );
   dialog({ title, wide: true, content });
 }
@@ -220,7 +220,7 @@ function createAnswer(lab) {
     legend(),
     omitted,
     element('div', { class: 'ray-figures' }, side.node, top.node),
-    button('Larger drawing', () => openDrawing(lab, question.tree.pixel), { icon: 'chart', small: true }),
+    button('Larger drawing', () => openDrawing(lab, question.tree.pixel), { icon: 'enlarge', small: true }),
     group(
       'Rays',
       { id: 'pixel-rays' },

@@ -447,7 +447,7 @@ function createBar(lab, section, { look, moveTo }) {
   const node = element(
     'div',
     { class: 'toolbar section-bar', role: 'group', 'aria-label': 'Section' },
-    button('Image', () => section.close(), { icon: 'cube', small: true, title: 'Back to the image (2)' }),
+    button('Image', () => section.close(), { icon: 'image', small: true, title: 'Back to the image (2)' }),
     views.group || views.node,
     place.node,
     button('Beam', () => section.addBeam(), {
@@ -463,8 +463,8 @@ function createBar(lab, section, { look, moveTo }) {
     element(
       'div',
       { class: 'bar-end' },
-      button('Zoom out', () => zoom(1 / ZOOM), { ...small, icon: 'minus', title: 'Zoom out (-)' }),
-      button('Zoom in', () => zoom(ZOOM), { ...small, icon: 'plus', title: 'Zoom in (+)' }),
+      button('Zoom out', () => zoom(1 / ZOOM), { ...small, icon: 'zoomout', title: 'Zoom out (-)' }),
+      button('Zoom in', () => zoom(ZOOM), { ...small, icon: 'zoomin', title: 'Zoom in (+)' }),
       button('Show all', () => section.fit(), { ...small, icon: 'fit', title: 'Show all (0)' }),
       button('SVG', saveSvg, { kind: 'quiet', small: true, title: 'Save this drawing as an SVG file' }),
       button('PDF', print, {

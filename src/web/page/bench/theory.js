@@ -46,7 +46,7 @@ export function createBenchTheory(lab) {
   const result = element('div', { class: 'bench-result', 'aria-live': 'polite' });
   const curves = element('div', { class: 'bench-result' });
   const age = element('p', { class: 'hint', hidden: true, text: 'From an earlier state of the scene: measure again.' });
-  const measure = button('Measure', act, { icon: 'chart', small: true, kind: 'primary' });
+  const measure = button('Measure', act, { icon: 'ruler', small: true, kind: 'primary' });
   let generation = null;
   let curve = null;
   const node = element('div', { class: 'bench-theory' }, measure, age, result, curves);
@@ -75,7 +75,7 @@ export function createBenchTheory(lab) {
 
   function save(address, name) {
     return button('Save table', () => saveReply(lab, address, `${lab.name()}-${name}.csv`), {
-      icon: 'save',
+      icon: 'download',
       small: true,
     });
   }

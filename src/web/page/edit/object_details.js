@@ -141,7 +141,7 @@ export function createDetails(lab, choice, files) {
       element(
         'span',
         { class: 'buttons' },
-        button('Copy', () => choice.copy(), { icon: 'copy', small: true, title: 'Add a copy next to it' }),
+        button('Copy', () => choice.copy(), { icon: 'duplicate', small: true, title: 'Add a copy next to it' }),
         button('Remove', remove, { icon: 'trash', small: true, kind: 'danger' }),
       ),
     );
@@ -155,9 +155,9 @@ export function createDetails(lab, choice, files) {
     return element(
       'div',
       { class: 'buttons object-pager', role: 'group', 'aria-label': 'Lights' },
-      button('Previous light', () => to(-1), { icon: 'left', small: true, disabled: single }),
+      button('Previous light', () => to(-1), { icon: 'earlier', small: true, disabled: single }),
       element('span', { class: 'hint', text: `${here + 1} of ${lights.length}` }),
-      button('Next light', () => to(1), { icon: 'right', small: true, disabled: single }),
+      button('Next light', () => to(1), { icon: 'later', small: true, disabled: single }),
       button('Add light', () => choice.add({ kind: 'light' }), { icon: 'plus', small: true }),
     );
   }
@@ -206,7 +206,7 @@ export function createDetails(lab, choice, files) {
             'div',
             { class: 'buttons' },
             parts.map((part) =>
-              button(`Go to ${part}`, () => choice.choose(part), { icon: 'right', small: true, kind: 'quiet' }),
+              button(`Go to ${part}`, () => choice.choose(part), { icon: 'later', small: true, kind: 'quiet' }),
             ),
           )
         : null,

@@ -30,8 +30,8 @@ export function objectTool(lab, choice, mark) {
     order: 15,
     cursor: 'pointer',
     hint:
-      'Click an object to select it, drag to move it; with Shift, drag the current ' +
-      'selection; arrow keys move, Delete removes; handles move, turn and scale: G changes them, N snaps',
+      'Take an object: click it, then drag it or its handles to move, turn or scale it ' +
+      '(arrow keys; G: next handles; N: snap; Delete: remove)',
     chosen() {
       lab.panels?.select('edit');
       gizmo.show();

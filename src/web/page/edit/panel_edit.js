@@ -88,10 +88,10 @@ function addButtons(lab) {
       small('Light', () => choice.add({ kind: 'light' }), 'light'),
       small('Beam', () => choice.add({ kind: 'beam' }), 'beam'),
       small('Material', () => choice.add({ kind: 'material' })),
-      small('Slime', () => choice.add({ kind: 'slime' }), 'hand'),
+      small('Slime', () => choice.add({ kind: 'slime' }), 'drop'),
       small('Model …', () => files.addFile('model', 'Add a model'), 'cube'),
       small('Texture …', () => files.addFile('texture', 'Add a texture'), 'image'),
-      small('Sky …', files.pickSky, 'image'),
+      small('Sky …', files.pickSky, 'cloud'),
       small('Data …', () => files.addFile('data', 'Add optical data')),
     ),
   );

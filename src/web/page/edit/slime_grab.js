@@ -19,8 +19,8 @@ export function createGrab(lab) {
     order: 30,
     cursor: 'grab',
     hint:
-      'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to grab and ' +
-      'release, Page Up and Page Down along the view',
+      'Pull the slime: drag it, and turn the wheel meanwhile for nearer and farther ' +
+      '(Enter: grab and let go; arrow keys; Page Up, Page Down)',
     chosen: () => lab.panels?.select('slime'),
     dropped() {
       hands.dropAll();

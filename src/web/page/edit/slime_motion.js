@@ -101,7 +101,7 @@ function shown({ name, level, integrator, dt_s: step, values }) {
 
 export function createMotion(lab) {
   const result = element('div', { class: 'slime-motion', 'aria-live': 'polite' });
-  const measure = button('Measure', act, { icon: 'chart', small: true, kind: 'primary' });
+  const measure = button('Measure', act, { icon: 'ruler', small: true, kind: 'primary' });
   const stop = button('Stop', () => lab.post('/api/motion/stop', {}).catch(lab.fail), { icon: 'stop', small: true });
   const node = element(
     'div',
@@ -137,7 +137,7 @@ export function createMotion(lab) {
   function save(csv) {
     const name = `${lab.name()}-motion.csv`;
     return button('Save table', () => download(new Blob([csv], { type: 'text/csv' }), name), {
-      icon: 'save',
+      icon: 'download',
       small: true,
     });
   }

@@ -217,7 +217,7 @@ function createForm(lab) {
     replace(
       result,
       image,
-      button('Save file', () => save().catch(fail), { icon: 'save', kind: 'primary' }),
+      button('Save file', () => save().catch(fail), { icon: 'download', kind: 'primary' }),
     );
     result.scrollIntoView({ block: 'nearest' });
   }

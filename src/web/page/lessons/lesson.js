@@ -48,7 +48,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
     element(
       'div',
       { class: 'lesson', lang: lesson.language },
-      element('div', { class: 'buttons' }, button('All lessons', back, { icon: 'undo', small: true })),
+      element('div', { class: 'buttons' }, button('All lessons', back, { icon: 'book', small: true })),
       heading,
       element('p', { class: 'lesson-question', text: lesson.question }),
       element('h4', { text: 'Your prediction' }),

@@ -83,7 +83,7 @@ export const displayButton = (lab) =>
     icon: 'screen',
     kind: 'quiet',
     bare: true,
-    title: 'Appearance: theme, large text, projector mode',
+    title: 'Appearance: light or dark, large text (T), projector (P)',
   });
 
 export function themeButton() {

@@ -174,13 +174,13 @@ export function share(lab) {
   );
   const png = form(
     'PNG with the scene',
-    'image',
+    'download',
     'The image; Cuvette opens it again as a scene.',
     save((more) => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png', more)),
   );
   const html = form(
     'HTML file',
-    'save',
+    'download',
     'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette. ' +
       'If this laboratory has the engine for browsers, the reader can also turn the scene.',
     save((more) => savePage(lab, more)),

@@ -99,7 +99,7 @@ function createSummary(lab) {
   const save = button(
     'Save summary as TSV',
     () => saveReply(lab, `/api/studies/${encodeURIComponent(name)}/summary.tsv`, `${name}.tsv`),
-    { icon: 'save', small: true, title: 'all columns, separated by tabs, as printed by cuvette study summary' },
+    { icon: 'download', small: true, title: 'all columns, separated by tabs, as printed by cuvette study summary' },
   );
   let name = '';
   let summary = null;

@@ -108,7 +108,7 @@ function optionsOf({ quantity, x, by, logX, logY }, format) {
 export function createSave(lab, chosen) {
   const messages = element('div');
   const buttons = FORMATS.map((name) =>
-    button(`Save figure as ${name}`, () => save(name.toLowerCase()), { icon: 'save', small: true }),
+    button(`Save figure as ${name}`, () => save(name.toLowerCase()), { icon: 'download', small: true }),
   );
   const node = element('div', { class: 'study-part' }, element('div', { class: 'buttons' }, buttons), messages);
   let study = null;

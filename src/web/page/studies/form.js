@@ -85,7 +85,7 @@ function createForm(lab, files, done) {
   const over = checkbox('Replace the existing file', false, () => fields.file.problem(null));
   const result = element('div', { class: 'study-estimate', 'aria-live': 'polite' });
   const buttons = [
-    button('Estimate', () => act(estimate), { icon: 'search' }),
+    button('Estimate', () => act(estimate), { icon: 'estimate' }),
     button('Save', () => act(save(false)), { icon: 'save' }),
     button('Save and start', () => act(save(true)), { icon: 'play', kind: 'primary' }),
   ];

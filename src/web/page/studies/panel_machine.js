@@ -96,7 +96,7 @@ function create(root, lab) {
 function createReport(root, lab) {
   const place = element('div', { class: 'machine', 'aria-live': 'polite' });
   const again = button('Refresh', () => refresh(), {
-    icon: 'reset',
+    icon: 'refresh',
     title: 'takes half a second to measure the load from other programs',
   });
   const when = element('span', { class: 'hint' });

@@ -54,7 +54,7 @@ function createStudies(root, lab) {
         element('h2', { text: 'Studies' }),
         button('New study', form.open, { icon: 'plus', small: true }),
         button('Refresh', () => refresh(), {
-          icon: 'reset',
+          icon: 'refresh',
           kind: 'quiet',
           small: true,
           title: 'read the study files again',

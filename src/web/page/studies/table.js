@@ -128,7 +128,7 @@ export function createRows(lab) {
     { small: true },
   );
   const save = button('Save rows as CSV', () => saveReply(lab, `${addressOf(study)}.csv`, `${study.name}-rows.csv`), {
-    icon: 'save',
+    icon: 'download',
     small: true,
   });
   const place = element('div', { class: 'study-part' });

@@ -180,7 +180,7 @@ export function cameraBox(root, lab) {
     icon: 'camera',
     kind: 'quiet',
     small: true,
-    title: 'Move the camera by exact steps and numbers',
+    title: 'Place the camera by steps and numbers',
     'aria-expanded': 'false',
   });
   lab.view.bar.append(...historyButtons(lab), toggle);
@@ -239,9 +239,9 @@ function historyButtons(lab) {
   const make = (each, more) =>
     button(each.label, each.act, { kind: 'quiet', small: true, title: titleOf(each), ...more });
   const nodes = [
-    make(keep, { icon: 'pin', bare: true }),
-    make(back, { icon: 'left', bare: true }),
-    make(forward, { icon: 'right', bare: true }),
+    make(keep, { icon: 'bookmark', bare: true }),
+    make(back, { icon: 'earlier', bare: true }),
+    make(forward, { icon: 'later', bare: true }),
   ];
   for (const node of nodes.slice(1)) node.classList.add('view-history');
   lab.on('state', ({ view }) => {

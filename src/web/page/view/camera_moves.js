@@ -59,7 +59,7 @@ export function orbitTool(lab) {
     icon: 'orbit',
     order: 10,
     cursor: 'grab',
-    hint: 'Drag to orbit about the pivot; with Shift: pan; with Ctrl: turn in place; wheel: nearer and farther',
+    hint: 'Walk around the scene: drag, or use the arrow keys. Shift: slide; Ctrl: look around; wheel: nearer, farther',
     down(point, event) {
       const what = event.shiftKey ? 'pan' : event.ctrlKey || event.metaKey ? 'turn' : 'orbit';
       drag = { x: event.clientX, y: event.clientY, gesture: gesture(what), what };

@@ -129,7 +129,7 @@ export function createCostMaps(lab) {
   /* Saves the map with the key below it, like the file of `cuvette render --rays`, `--time` or `--cut`. */
   function save(which) {
     const act = () => saveReply(lab, `/api/maps/${which}.png`, `${lab.name()}-${which}.png`);
-    return button('Save this map', act, { icon: 'save', small: true });
+    return button('Save this map', act, { icon: 'download', small: true });
   }
 
   /* The map of an earlier image would hide the newest one. */

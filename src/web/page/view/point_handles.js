@@ -209,7 +209,7 @@ export function lightTool(lab) {
     icon: 'light',
     order: 20,
     cursor: 'default',
-    hint: 'Drag a light; with Shift: nearer and farther',
+    hint: 'Move a lamp: drag it, or use Tab and the arrow keys. Shift: nearer and farther',
     wheel: createWheelZoom(lab),
     chosen: handles.show,
     dropped: handles.hide,

@@ -30,7 +30,7 @@ export function createToolbar(view, lab, readout) {
       'div',
       { class: 'bar-end' },
       button('Zoom out', () => view.zoom(1 / ZOOM), {
-        icon: 'minus',
+        icon: 'zoomout',
         bare: true,
         kind: 'quiet',
         small: true,
@@ -38,7 +38,7 @@ export function createToolbar(view, lab, readout) {
       }),
       level,
       button('Zoom in', () => view.zoom(ZOOM), {
-        icon: 'plus',
+        icon: 'zoomin',
         bare: true,
         kind: 'quiet',
         small: true,
