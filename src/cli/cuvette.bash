@@ -268,7 +268,7 @@ _cuvette()
         ;;
     lab)
         if [[ $current == -* ]]; then
-            _cuvette_words --folder --results --port --threads --no-browser --memory-limit --help --usage --version
+            _cuvette_words --folder --results --port --threads --embed-origin --no-browser --memory-limit --help --usage --version
         else
             _cuvette_files 'yaml|yml'
         fi

@@ -113,8 +113,23 @@ static void browser_remove_file(char *file)
 typedef struct lab_request {
     const char *scene, *folder, *results; /* NULL: not given */
     int64_t port, threads;
+    const char *embed_origins[HTTP_FRAME_ORIGINS_MAX];
+    size_t embed_origin_count;
     bool no_browser;
 } lab_request;
+
+static status store_origin(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    lab_request *request = context;
+    (void)o;
+    if (!http_is_origin(value))
+        return options_wrong("--embed-origin", NULL, why, "use scheme, host and perhaps port: https://lms.example",
+                             "'%.128s' is not the origin of a site", value);
+    if (request->embed_origin_count == HTTP_FRAME_ORIGINS_MAX)
+        return options_wrong("--embed-origin", NULL, why, "remove the others", "only 8 origins can be given");
+    request->embed_origins[request->embed_origin_count++] = value;
+    return STATUS_OK;
+}
 
 static const command_option options[] = {
     {"folder", 0, "DIR",
@@ -127,6 +142,9 @@ static const command_option options[] = {
      .lowest = 0, .highest = 65535},
     {"threads", 0, "N", "threads for scenes that do not set render.threads (default: one per processing unit)",
      OPTION_FILLS(option_integer, lab_request, threads), .lowest = 1, .highest = 1024},
+    {"embed-origin", 0, "ORIGIN",
+     "let pages of this site show the laboratory in a frame, such as https://lms.example; repeatable (default: none)",
+     .store = store_origin},
     OPTION_MEMORY,
     {"no-browser", 0, NULL, "do not open the address in a browser", OPTION_FILLS(option_flag, lab_request, no_browser)},
     {0},
@@ -198,6 +216,8 @@ static status run_lab(const lab_request *request, const char *scenes, const char
                              .results = results,
                              .rescue = kept_in,
                              .port = (int)request->port,
+                             .frame_origins = request->embed_origins,
+                             .frame_origin_count = request->embed_origin_count,
                              .confine = true,
                              .threads = (int)request->threads};
     status code = kept_in ? scene_input_isa(&settings.level, why) : out_of_memory(why);

@@ -136,7 +136,9 @@ static status serve(lab *l, diagnostic *why)
                                     .connections = 128,
                                     .event_clients = 48,
                                     .timeout_s = 30,
-                                    .requests_per_s = l->settings.requests_per_s};
+                                    .requests_per_s = l->settings.requests_per_s,
+                                    .frame_origins = l->settings.frame_origins,
+                                    .frame_origin_count = l->settings.frame_origin_count};
     THEN(code, http_start(&settings, &l->server, why));
     pthread_mutex_lock(&l->publish_lock);
     l->open = code == STATUS_OK;

@@ -63,6 +63,8 @@ for name in experiments/scenes/rod.yaml scenes/rod.yaml rod.yaml rod.yml rod; do
         render $name --json
 done
 refused "installed scene in the laboratory" "; use /[^ ]*/scenes/rod.yaml, or copy" lab scenes/rod.yaml --no-browser
+refused "a path in an origin" "'https://lms.example/x' is not [^;]*; use scheme, host" \
+    lab --embed-origin https://lms.example/x --no-browser
 refused "installed study" "; use /[^ ]*/experiments/depth.study, or copy all" study run experiments/depth.study
 refused "installed study by its name" "; use /[^ ]*/experiments/depth.study, or copy all" study summary depth
 printf 'study: own\nscene: scenes/rod.yaml\n' >own.study

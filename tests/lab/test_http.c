@@ -319,6 +319,46 @@ static void every_reply_has_security_headers(void **state)
     }
 }
 
+/* A frame gets a cookie that browsers accept from another site; other requests get the usual one. */
+static void chosen_sites_may_frame_the_page(void **state)
+{
+    (void)state;
+    static const char *const origins[] = {"https://lms.example", "http://localhost:8080"};
+    static const char *const wrong[] = {"",
+                                        "lms.example",
+                                        "https://",
+                                        "https://lms.example/",
+                                        "https://lms.example:0x",
+                                        "https://lms.example:70000",
+                                        "https://*",
+                                        "https://a b",
+                                        "https://a;script-src",
+                                        "https://A.example",
+                                        "https://[::1",
+                                        "data:x"};
+    static const char frame[] = "Sec-Fetch-Site: cross-site\r\nSec-Fetch-Dest: iframe\r\n";
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        http_server *none;
+        const http_settings settings = {.frame_origins = wrong + i, .frame_origin_count = 1};
+        assert_false(http_is_origin(wrong[i]));
+        assert_int_equal(http_start(&settings, &none, NULL), STATUS_BAD_INPUT);
+    }
+    assert_true(http_is_origin("https://[::1]:8000"));
+    http_server *s = start((http_settings){.frame_origins = origins, .frame_origin_count = 2});
+    char *target = text_format("/?embed=1&token=%s", http_token(s));
+    for (int framed = 0; framed < 2; framed++) {
+        char *reply = client_ask_as(http_port(s), "GET", target, framed ? frame : "", NULL);
+        assert_int_equal(reply_code(reply), 303);
+        assert_true(reply_has(reply, "Location: /?embed=1"));
+        assert_non_null(strstr(reply, "; frame-ancestors https://lms.example http://localhost:8080\r\n"));
+        assert_non_null(strstr(reply, framed ? "; HttpOnly; SameSite=None; Secure; Partitioned\r\n"
+                                             : "; HttpOnly; SameSite=Strict\r\n"));
+        free(reply);
+    }
+    free(target);
+    http_stop(s);
+}
+
 static void the_page_is_embedded(void **state)
 {
     for (size_t i = 0; i < page_file_count; i++) {
@@ -593,6 +633,7 @@ int main(void)
         cmocka_unit_test(routes_receive_decoded_values),
         cmocka_unit_test(a_wrong_method_is_refused_with_the_allowed_ones),
         cmocka_unit_test(every_reply_has_security_headers),
+        cmocka_unit_test(chosen_sites_may_frame_the_page),
         cmocka_unit_test(the_page_is_embedded),
         cmocka_unit_test(changes_require_json),
         cmocka_unit_test(bodies_are_limited_in_size),

@@ -1,4 +1,5 @@
 /* Start and stop of the HTTP server. */
+#include "base/text.h"
 #include "web/http/http_library.h"
 
 #include <arpa/inet.h>
@@ -46,9 +47,52 @@ static status check(http_settings *s, diagnostic *why)
     if (s->event_clients < 0 || s->event_clients > HTTP_EVENT_CLIENTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 512 event streams, or 0 for the default",
                         "the number of event streams, %d, is out of range", s->event_clients);
+    if (s->frame_origin_count > HTTP_FRAME_ORIGINS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 8 origins", "there are too many origins");
+    for (size_t i = 0; i < s->frame_origin_count; i++)
+        if (!http_is_origin(s->frame_origins[i]))
+            return diagnose(why, STATUS_BAD_INPUT, "use an origin such as https://lms.example",
+                            "'%.128s' is not an origin", s->frame_origins[i]);
     s->timeout_s = s->timeout_s > 0 ? s->timeout_s : 10;
     s->requests_per_s = s->requests_per_s > 0 ? s->requests_per_s : 2000;
     return STATUS_OK;
+}
+
+static bool is_host(const char *text, size_t length)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789-.";
+    if (length > 2 && text[0] == '[' && text[length - 1] == ']')
+        return strspn(text + 1, "0123456789abcdef:") == length - 2;
+    return length > 0 && length < 254 && strspn(text, letters) == length && text[0] != '.' && text[0] != '-';
+}
+
+bool http_is_origin(const char *text)
+{
+    const size_t scheme = strncmp(text, "https://", 8) == 0 ? 8 : strncmp(text, "http://", 7) == 0 ? 7 : 0;
+    const char *host = text + scheme, *end = host[0] == '[' ? strchr(host, ']') : NULL;
+    const size_t length = end ? (size_t)(end + 1 - host) : strcspn(host, ":");
+    const char *port = host + length;
+    const size_t digits = port[0] ? strspn(port + 1, "0123456789") : 0;
+    if (port[0] && (port[0] != ':' || digits < 1 || digits > 5 || port[1 + digits] || atoi(port + 1) > 65535))
+        return false;
+    return scheme && is_host(host, length);
+}
+
+/* The page loads only from this server; who may show it in a frame is in the settings. */
+static status make_content_policy(http_server *s, diagnostic *why)
+{
+    static const char format[] =
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors%s";
+    char *origins = strdup(s->settings.frame_origin_count ? "" : " 'none'");
+    for (size_t i = 0; origins && i < s->settings.frame_origin_count; i++) {
+        char *more = text_format("%s %s", origins, s->settings.frame_origins[i]);
+        free(origins);
+        origins = more;
+    }
+    s->content_policy = origins ? text_format(format, origins) : NULL;
+    free(origins);
+    return s->content_policy ? STATUS_OK : out_of_memory(why);
 }
 
 static status make_token(http_server *s, diagnostic *why)
@@ -122,6 +166,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     pthread_cond_init(&s->watch_wake, NULL);
     status code = check(&s->settings, why);
     THEN(code, http_library_load(why));
+    THEN(code, make_content_policy(s, why));
     THEN(code, make_token(s, why));
     THEN(code, listen_and_serve(s, why));
     if (code != STATUS_OK) {
@@ -144,6 +189,7 @@ void http_stop(http_server *s)
     pthread_mutex_destroy(&s->event_lock);
     pthread_mutex_destroy(&s->watch_lock);
     pthread_mutex_destroy(&s->bucket_lock);
+    free(s->content_policy);
     explicit_bzero(s, sizeof *s);
     free(s);
 }

@@ -27,9 +27,12 @@
  *   413  body_max
  * A request must arrive within timeout_s, and a reply must be read within the same time; slower connections are
  * closed. Connections that have sent no request with the token may be a quarter of all; another one displaces the
- * oldest of them. Each reply forbids the browser to cache it, to frame it, to guess its type or to load anything from
- * elsewhere for it (Content-Security-Policy and related headers); libmicrohttpd's own replies to malformed HTTP lack
- * these headers.
+ * oldest of them. Each reply forbids the browser to cache it, to frame it (but for frame_origins), to guess its type or
+ * to load anything from elsewhere for it (Content-Security-Policy and related headers); libmicrohttpd's own replies to
+ * malformed HTTP lack these headers.
+ *
+ * In a frame of another site a browser accepts only cookies with SameSite=None; so with frame_origins a frame gets such
+ * a cookie, which is partitioned: the browser sends it only from frames in pages of that site.
  *
  * Texts of 1400 bytes or more are compressed for clients that accept gzip.
  *
@@ -44,6 +47,7 @@
 #include "base/status.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct http_server http_server;
@@ -53,7 +57,7 @@ typedef struct http_reply http_reply;
 /* Fills the reply; an empty reply becomes a 500. Request and reply are valid until the handler returns. */
 typedef void http_handler(void *context, const http_request *request, http_reply *reply);
 
-enum { HTTP_VALUES_MAX = 4 };
+enum { HTTP_VALUES_MAX = 4, HTTP_FRAME_ORIGINS_MAX = 8 };
 typedef struct http_route {
     const char *method; /* "GET", "PUT", .. */
     /* "/api/params/{name}": a part in braces matches any one part; at most HTTP_VALUES_MAX of them */
@@ -81,7 +85,13 @@ typedef struct http_settings {
     int event_clients;     /* connections that may be event streams [half of all, at most 32]; more clients get 503 */
     int timeout_s;         /* [10] */
     double requests_per_s; /* [2000] */
+    /* Origins whose pages may show this server's page in a frame, each as http_is_origin accepts it [none] */
+    const char *const *frame_origins;
+    size_t frame_origin_count; /* at most HTTP_FRAME_ORIGINS_MAX */
 } http_settings;
+
+/* Whether the text is an origin: http:// or https://, a host in lower case and perhaps a port; no path. */
+bool http_is_origin(const char *text);
 
 status http_start(const http_settings *settings, http_server **out, diagnostic *why);
 /* Ends all streams, waits for running handlers, then releases the server. No thread may call http_publish during or

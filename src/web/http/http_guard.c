@@ -175,6 +175,13 @@ static bool comes_from_another_page(const http_request *q)
     return site && strcmp(site, "cross-site") == 0;
 }
 
+/* Whether the browser loads the page into a frame of a page that may show it. The content policy stops other frames. */
+static bool is_framed(const http_request *q)
+{
+    const char *place = mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Dest");
+    return q->server->settings.frame_origin_count && place && strcmp(place, "iframe") == 0;
+}
+
 static const char reload_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title>Cuvette</title>"
                                   "<meta http-equiv=\"refresh\" content=\"0; url=/\">";
 
@@ -182,8 +189,10 @@ static const char reload_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title
 static int set_token_cookie(http_request *q)
 {
     char *clean = clean_target(q->target), cookie[128];
-    const int code = comes_from_another_page(q) ? 200 : 303;
-    snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
+    const bool framed = is_framed(q);
+    const int code = comes_from_another_page(q) && !framed ? 200 : 303;
+    snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=%s", q->server->cookie, q->server->token,
+             framed ? "None; Secure; Partitioned" : "Strict");
     if (code == 200) {
         http_reply_static(&q->reply, code, "text/html; charset=utf-8", reload_page, sizeof reload_page - 1);
     } else {

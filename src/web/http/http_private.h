@@ -35,6 +35,7 @@ struct http_server {
     struct MHD_Daemon *daemon;
     int port;
     char token[HTTP_TOKEN_DIGITS + 1], address[96], cookie[24];
+    char *content_policy; /* the header Content-Security-Policy */
 
     pthread_mutex_t bucket_lock;
     http_bucket known, unknown; /* requests with the token and without */

@@ -42,9 +42,6 @@ void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MH
 /* --- the reply --- */
 
 static const char *const on_every_reply[][2] = {
-    {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
-     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
     {"X-Content-Type-Options", "nosniff"},
     {"Referrer-Policy", "no-referrer"},
     {"Cache-Control", "no-store"},
@@ -60,7 +57,8 @@ static enum MHD_Result send_reply(http_reply *r)
                          r->code ? "try again later" : "report this as a bug, with the request");
     if (!r->response)
         return MHD_NO;
-    bool complete = true;
+    bool complete =
+        mhd.add_response_header(r->response, "Content-Security-Policy", r->server->content_policy) == MHD_YES;
     for (size_t i = 0; i < sizeof on_every_reply / sizeof *on_every_reply; i++)
         complete &= mhd.add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
     for (int i = 0; i < r->header_count; i++)

@@ -34,6 +34,9 @@ typedef struct lab_settings {
     isa level;
     int threads;           /* default of render.threads for opened scenes; 0: keep the scene's value */
     double requests_per_s; /* 0: the default of web/http/http.h */
+    /* Origins whose pages may show this laboratory in a frame (web/http/http.h). */
+    const char *const *frame_origins;
+    size_t frame_origin_count;
     /* Confine the laboratory's threads, and the programs that they start, to these folders and the system's files, in
      * addition to the laboratory's own checks, where the kernel has Landlock. The caller's threads are not confined. */
     bool confine;
