@@ -8,6 +8,7 @@ import { createHead } from './head.js';
 import { createBanner, createStatus } from './status.js';
 import { createNotes } from './shared/notes.js';
 import { createRescue } from './rescue.js';
+import { createPrint } from './shared/print.js';
 import { createDisplay } from './shared/display.js';
 import { createKeys } from './keys.js';
 import { createTips } from './shared/tips.js';
@@ -48,6 +49,7 @@ async function start() {
   createHead(at('head'), lab);
   createKeys(lab);
   createTips();
+  createPrint(lab);
   const loaded = await Promise.allSettled(modules.map((load) => load()));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);

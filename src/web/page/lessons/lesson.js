@@ -6,6 +6,7 @@ import { session } from '../shared/address.js';
 import { whyUnused } from '../edit/param_row.js';
 import { commandRow } from '../shared/commands.js';
 import { theoryChart } from '../shared/theory_chart.js';
+import { worksheetButtons } from './worksheet.js';
 import { button, checkbox, choice, digits, element, notice, number, replace, slider } from '../shared/ui.js';
 
 const REST_MS = 200; /* a measurement starts when the scene has not changed for this time */
@@ -60,6 +61,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
       result,
       answer,
       commands,
+      worksheetButtons(lab, lesson),
     ),
   );
   heading.focus();

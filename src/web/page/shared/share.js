@@ -12,8 +12,11 @@
  *   share(lab)          the dialog: copies a link, saves a file with the scene, and opens such a file */
 
 import { name, named, returned } from './address.js';
+import { say } from './language.js';
+import { printCode, printState } from './print.js';
 import { saveFile, savePage } from './save_file.js';
-import { button, copy, dialog, element, notice, replace } from './ui.js';
+import { createLinks } from './share_link.js';
+import { button, dialog, element, notice, replace } from './ui.js';
 
 /* --- links --- */
 
@@ -33,29 +36,11 @@ async function openFragment(lab) {
   if (link) await openText(lab, link);
 }
 
-/* A page within another one, as in a notebook, has no address: only the fragment is copied. */
-const pageAddress = () => (location.protocol === 'about:' ? '' : new URL(location.pathname, location.href).href);
-
-const COPIED = {
-  server: 'Link copied. It holds the whole scene, and opens in any laboratory at that address.',
-  browser: 'Link copied. It holds the whole scene, and opens in any browser that can reach this page.',
-};
-
 async function openText(lab, link) {
   try {
     await lab.change('/api/open', { link });
     lab.panels.reveal();
     lab.say('The shared scene is shown. Undo restores the previous scene.');
-  } catch (error) {
-    lab.fail(error);
-  }
-}
-
-async function copyLink(lab) {
-  try {
-    const { fragment, code } = await lab.get('/api/link');
-    await copy(`${pageAddress()}${fragment}${code}`);
-    lab.say(COPIED[lab.engine.kind]);
   } catch (error) {
     lab.fail(error);
   }
@@ -146,32 +131,33 @@ function base64url(bytes) {
 
 /* --- the dialog --- */
 
-/* Why the scene cannot be shared, such as the files that it names; null if it can. */
-async function refusalOf(lab) {
+/* {link: the scene as the fragment of an address} or {refusal: why it cannot be shared, such as its files}. */
+async function linkOf(lab) {
   try {
-    await lab.get('/api/link');
+    const { fragment, code } = await lab.get('/api/link');
+    return { link: fragment + code, refusal: null };
   } catch (error) {
-    if (error.status === 409) return error;
+    return { link: null, refusal: error.status === 409 ? error : null };
   }
-  return null;
 }
 
 export function share(lab) {
   const input = element('input', { type: 'file', accept: '.png,.html', hidden: true });
-  const refusing = refusalOf(lab);
+  const linking = linkOf(lab);
+  const refusing = linking.then(({ refusal }) => refusal);
   const act = (what) => async () => {
     made.close();
     what(await refusing);
   };
   const save = (file) => act((refusal) => file(refusal ? ` without the scene: ${refusal.message}` : ''));
-  const link = form(
-    'Copy link',
-    'copy',
-    lab.engine.kind === 'server'
-      ? 'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.'
-      : 'A link with the scene, which opens in any browser that can reach this page.',
-    act(() => copyLink(lab)),
-  );
+  const links = createLinks(lab, {
+    code: linking.then(({ link }) => link),
+    print: printCode,
+    copied(words) {
+      made.close();
+      lab.say(words);
+    },
+  });
   const png = form(
     'PNG with the scene',
     'download',
@@ -190,9 +176,13 @@ export function share(lab) {
     title: 'Share',
     content: [
       trouble,
-      link.node,
+      links,
       png.node,
       html.node,
+      form('Print …', 'image', 'Image, title, changed parameters and command on a page, or in a PDF file.', () => {
+        made.close();
+        printState(lab).catch(lab.fail);
+      }).node,
       form('Open a shared file …', 'folder', 'A PNG or HTML file, which can also be dropped on the page.', () =>
         input.click(),
       ).node,
@@ -205,9 +195,8 @@ export function share(lab) {
   });
   refusing.then((refusal) => {
     if (!refusal) return;
-    const message = `Files are saved without the scene: ${refusal.message}.`;
+    const message = say('No link, and files are saved without the scene: {reason}.', { reason: refusal.message });
     replace(trouble, notice(message, { kind: 'warning', remedy: refusal.remedy }));
-    link.set('Copy link', 'Not possible for this scene.', true);
     png.set('PNG without the scene', 'The image alone; Cuvette cannot open it as a scene.');
     html.set(
       'HTML file without the scene',
@@ -221,9 +210,8 @@ function form(label, icon, words, act) {
   const hint = element('p', { class: 'hint', text: words });
   return {
     node: element('div', { class: 'share-form' }, made, hint),
-    set(nextLabel, nextWords, disabled = false) {
+    set(nextLabel, nextWords) {
       made.querySelector('.button-label').textContent = nextLabel;
-      made.disabled = disabled;
       hint.textContent = nextWords;
     },
   };
