@@ -8,6 +8,7 @@ import { createHead } from './head.js';
 import { createBanner, createStatus } from './status.js';
 import { createNotes } from './shared/notes.js';
 import { createRescue } from './rescue.js';
+import { createEmbed } from './embed.js';
 import { createPrint } from './shared/print.js';
 import { createDisplay } from './shared/display.js';
 import { createKeys } from './keys.js';
@@ -53,6 +54,7 @@ async function start() {
   const loaded = await Promise.allSettled(modules.map((load) => load()));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
+  createEmbed(at('status'), lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   if (namesScene()) lab.panels.reveal();
   lab.start();

@@ -17,7 +17,8 @@ import { startWorker } from './engine_boot.js';
 /* --- the program: requests and events over HTTP ---
  * One event stream for all tabs of the laboratory: a browser opens at most six connections to a server, and each stream
  * occupies one. The tab that has the lock reads the stream and passes its events on to the others; when that tab is
- * closed, another gets the lock. Without locks or channels every tab has its own stream. */
+ * closed, another gets the lock. Without locks or channels, or where they are forbidden, as in a frame of another site,
+ * every tab has its own stream. */
 
 const SHARED = 'cuvette-events'; /* the name of lock and channel */
 
@@ -48,7 +49,7 @@ function openEvents(names, listener) {
     else if (data.what === 'error') listener.error();
     else if (data.what === 'event') listener.event(data.name, data.value);
   };
-  navigator.locks.request(SHARED, { signal: ended.signal }, lead).catch(() => undefined); /* closed without the lock */
+  navigator.locks.request(SHARED, { signal: ended.signal }, lead).catch(lead);
   post({ what: 'hello' });
   return () => {
     ended.abort();
