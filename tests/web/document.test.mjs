@@ -317,7 +317,12 @@ export const cases = {
     await screen.context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin: lab.origin });
     await screen.setNumber('liquid.ior', 1.45);
     const film = await shownFilm(screen);
-    const [download] = await Promise.all([screen.page.waitForEvent('download'), screen.button('Save PNG').click()]);
+    await screen.button('Save image').click();
+    const box = screen.page.getByRole('dialog', { name: 'Save image' });
+    const [download] = await Promise.all([
+      screen.page.waitForEvent('download'),
+      box.getByRole('button', { name: 'Save' }).click(),
+    ]);
     t.equal(download.suggestedFilename(), 'rod.png', 'the name of the image');
     const saved = readPng(await readFile(await download.path()));
     t.equal(difference(saved, await screen.served()), 0, "share of pixels that differ from the server's image");

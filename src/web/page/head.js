@@ -6,7 +6,7 @@ import { saveVideo } from './edit/video_dialog.js';
 import { showHelp } from './keys.js';
 import { displayButton, themeButton } from './shared/display.js';
 import { languageMenu } from './shared/language_menu.js';
-import { saveFile } from './shared/save_file.js';
+import { saveImage } from './shared/save_image.js';
 import { ask, button, copy, element, icon, write } from './shared/ui.js';
 
 export function createHead(root, lab) {
@@ -35,17 +35,11 @@ export function createHead(root, lab) {
     element(
       'div',
       { class: 'head-group', role: 'group', 'aria-label': 'Save and copy' },
-      button('PNG', () => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png'), {
+      button('Image', () => saveImage(lab), {
         icon: 'download',
         kind: 'quiet',
-        title: 'Save the image as a PNG file: exact, and Cuvette opens it again as a scene',
-        'aria-label': 'Save PNG',
-      }),
-      button('JPEG', () => saveFile(lab, '/api/image.jpg?wait=1', 'jpg'), {
-        icon: 'download',
-        kind: 'quiet',
-        title: 'Save the image as a JPEG file: small, for a web page or a letter',
-        'aria-label': 'Save JPEG',
+        title: 'Save the image: PNG, JPEG, SVG or HTML, with or without rays',
+        'aria-label': 'Save image',
       }),
       button('Video', () => saveVideo(lab), {
         icon: 'video',

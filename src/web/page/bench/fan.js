@@ -89,6 +89,7 @@ export function createBenchFan(lab, bench, changed) {
   let requested = '';
   lab.on('scene', follow);
   lab.on('restarted', remove);
+  lab.view.behind(() => asking);
   showSize();
   return { node };
 

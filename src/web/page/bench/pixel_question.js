@@ -29,6 +29,7 @@ export function createQuestion(lab) {
     },
     on: (listener) => listeners.add(listener),
   };
+  lab.view.behind(() => question.pixel && (question.busy || !isShown()));
   lab.on('image', (image) => {
     if (!question.pixel || !traced) return;
     if (question.pixel.x >= image.full_width || question.pixel.y >= image.full_height) {
@@ -46,6 +47,10 @@ export function createQuestion(lab) {
     }
   });
   return question;
+
+  function isShown() {
+    return lab.image?.final && lab.image.generation >= lab.newestGeneration;
+  }
 
   function dependence() {
     const camera = [];

@@ -18,6 +18,7 @@ export function createBenchRays(lab) {
   lab.on('restarted', () => {
     traced = '';
   });
+  lab.view.behind(() => asking);
   if (lab.scene) follow();
   return rays;
 

@@ -1,23 +1,8 @@
 /* The drawing of a section as a file: what is on the screen, in the colours of a light page.
  * exports: sectionExports(lab, section) -> {saveSvg(), print(), copy() -> an SVG element with all its style} */
 
+import { styled } from '../shared/styled.js';
 import { download, element, svg } from '../shared/ui.js';
-
-const STYLE = [
-  'fill',
-  'fill-rule',
-  'stroke',
-  'stroke-width',
-  'stroke-opacity',
-  'stroke-dasharray',
-  'stroke-linecap',
-  'stroke-linejoin',
-  'opacity',
-  'font-size',
-  'font-weight',
-  'font-family',
-  'text-anchor',
-];
 
 export function sectionExports(lab, section) {
   return { saveSvg, print, copy };
@@ -36,27 +21,12 @@ export function sectionExports(lab, section) {
     made.append(
       svg('title', {}, lab.state?.title || lab.name()),
       svg('rect', { width: port.width, height: port.height, fill: paper }),
-      ...[...node.children].filter((child) => !child.classList.contains('section-hand')).map(styled),
+      ...[...node.children]
+        .filter((child) => !child.classList.contains('section-hand'))
+        .map((child) => styled(child, { drops: (each) => each.classList.contains('grip') })),
     );
     node.style.colorScheme = '';
     return made;
-  }
-
-  function styled(from) {
-    const to = from.cloneNode(false);
-    const computed = getComputedStyle(from);
-    for (const name of ['class', 'style', 'tabindex', 'role', 'aria-label', 'aria-pressed']) to.removeAttribute(name);
-    for (const name of Object.keys(to.dataset)) delete to.dataset[name];
-    for (const name of from.childElementCount ? [] : STYLE) {
-      const value = computed.getPropertyValue(name);
-      if (value) to.setAttribute(name, value);
-    }
-    to.append(
-      ...[...from.childNodes]
-        .filter((child) => !child.classList?.contains('grip'))
-        .map((child) => (child.nodeType === Node.TEXT_NODE ? child.cloneNode() : styled(child))),
-    );
-    return to;
   }
 
   function saveSvg() {

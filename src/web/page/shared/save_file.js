@@ -2,14 +2,30 @@
  * exports:
  *   saveFile(lab, address, ending, more)   waits for the final image; the name is the scene's; more: the end of the
  *                                          message 'NAME saved'
- *   savePage(lab, more)                    the image as a page, with the laboratory if the page has its text
+ *   savePage(lab, more, drawing)           the image as a page, with the laboratory if the page has its text; drawing:
+ *                                          over the image, in place of the page's rays (snapshot.js)
  *   saveReply(lab, address, name)          any other reply */
 
+import { dataAddress, textOf } from './snapshot.js';
 import { download } from './ui.js';
 
-export async function savePage(lab, more) {
-  if (lab.engine.kind === 'server') await saveFile(lab, '/api/page.html', 'html', more);
-  else await saveFile(lab, `/api/page.html?${PLACE_FOR_LABORATORY}`, 'html', more, withLaboratory);
+export async function savePage(lab, more, drawing = null) {
+  const server = lab.engine.kind === 'server';
+  await saveFile(lab, `/api/page.html${server ? '' : `?${PLACE_FOR_LABORATORY}`}`, 'html', more, async (blob) => {
+    const page = server ? blob : await withLaboratory(blob);
+    return drawing ? withDrawing(page, drawing) : page;
+  });
+}
+
+/* The page's own lines are links to the rows of its table: they stay, unseen, and the chosen one is shown. */
+const UNSEEN = '<style>.seen~svg{opacity:0}.seen~svg:has(:target){opacity:1}</style>';
+
+async function withDrawing(blob, drawing) {
+  const text = await blob.text();
+  const at = text.indexOf('<svg', text.indexOf('<div class="stage"'));
+  drawing.setAttribute('class', 'seen');
+  Object.assign(drawing.style, { position: 'absolute', inset: '0' });
+  return new Blob([text.slice(0, at), UNSEEN, textOf(drawing), text.slice(at)], { type: blob.type });
 }
 
 export async function saveFile(lab, address, ending, more = '', complete = (blob) => blob) {
@@ -40,19 +56,11 @@ export async function saveReply(lab, address, name) {
 const PLACE_FOR_LABORATORY = 'live=empty';
 const PLACE = 'id="cuvette-live">';
 
-const base64 = (blob) =>
-  new Promise((resolve, reject) => {
-    const reader = new FileReader();
-    reader.onload = () => resolve(reader.result.split(',')[1]);
-    reader.onerror = () => reject(reader.error);
-    reader.readAsDataURL(blob);
-  });
-
 async function withLaboratory(blob) {
   const [before, after] = (await blob.text()).split(PLACE, 2);
   const laboratory = after === undefined ? null : await globalThis.cuvetteDocument?.().catch(() => null);
   if (!laboratory) return blob;
   const packed = new Blob([laboratory]).stream().pipeThrough(new CompressionStream('deflate'));
-  const code = await base64(await new Response(packed).blob());
+  const [, code] = (await dataAddress(await new Response(packed).blob())).split(',');
   return new Blob([before, PLACE, code, after], { type: blob.type });
 }

@@ -13,6 +13,7 @@
 
 import { name, named, returned } from './address.js';
 import { say } from './language.js';
+import { codeOfPng } from './png_chunks.js';
 import { printCode, printState } from './print.js';
 import { saveFile, savePage } from './save_file.js';
 import { createLinks } from './share_link.js';
@@ -49,7 +50,6 @@ async function openText(lab, link) {
 /* --- files: PNG images and HTML pages --- */
 
 const BEGIN = '<script type="text/plain" id="cuvette-scene">';
-const KEYWORD = 'Cuvette scene';
 const LARGEST_LENS = 500000; // bytes, so that a request can hold it
 const LARGEST = 1 << 28; // bytes, as for files of the laboratory's folder
 
@@ -105,28 +105,6 @@ function codeOf(bytes) {
 function codeOfPage(text) {
   const at = text.indexOf(BEGIN);
   return at < 0 ? null : text.slice(at + BEGIN.length).split('<', 1)[0];
-}
-
-/* The chunks of a PNG: length, type, data, checksum. iTXt (PNG specification, 11.3.3): keyword, 0, compressed, method,
- * language, 0, translated keyword, 0, text. */
-function codeOfPng(bytes) {
-  const view = new DataView(bytes.buffer);
-  for (let at = 8; at + 12 <= bytes.length; at += 12 + view.getUint32(at)) {
-    const data = bytes.subarray(at + 8, at + 8 + view.getUint32(at));
-    if (word(bytes.subarray(at + 4, at + 8)) !== 'iTXt' || word(data.subarray(0, KEYWORD.length)) !== KEYWORD) continue;
-    const rest = data.subarray(KEYWORD.length + 3);
-    const text = rest.subarray(rest.indexOf(0, rest.indexOf(0) + 1) + 1);
-    return data[KEYWORD.length + 1] === 1 ? base64url(text) : null;
-  }
-  return null;
-}
-
-const word = (bytes) => String.fromCharCode(...bytes);
-
-function base64url(bytes) {
-  let text = '';
-  for (const byte of bytes) text += String.fromCharCode(byte);
-  return btoa(text).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
 }
 
 /* --- the dialog --- */

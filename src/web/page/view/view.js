@@ -29,6 +29,8 @@
  *   view.redraw()
  *   view.note(name, text or null, onclose)   a line at the upper edge that names what is drawn over the image, with a
  *                                       button that removes it; a later note of that name replaces it
+ *   view.behind(is)                     is() -> whether a drawing over the image still belongs to an older scene
+ *   view.isDrawn()                      whether none does
  * lab.on('view', f) reports a change of scale, position or size: elements in overlay must be placed again. */
 
 import { button, element, svg, write } from '../shared/ui.js';
@@ -65,6 +67,7 @@ export function createView(root, lab) {
     notes.node,
   );
   const named = new Map();
+  const late = [];
 
   const view = {
     stage,
@@ -87,6 +90,8 @@ export function createView(root, lab) {
     show: (blob) => painting.show(blob),
     note: notes.note,
     redraw,
+    behind: (is) => late.push(is),
+    isDrawn: () => !late.some((is) => is()),
   };
   const place = createPlace(stage, view, redraw);
   const painting = createPainting(canvas, view, place, lab);
