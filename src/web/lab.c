@@ -77,7 +77,7 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
 {
     *file = NULL;
     if (!l->settings.scene)
-        return new_scene(out, why);
+        return new_scene(false, out, why);
     TRY(folder_find(l->files, l->settings.scene, file, why));
     if (!*file)
         return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT,

@@ -425,6 +425,8 @@ status scene_read_text(const char *name, const char *text, size_t size, scene **
     return read_scene_text(name, text, size, &(lens_access){.allowed = false}, out, why);
 }
 
+/* --- scenes to begin with --- */
+
 static const char initial_scene[] =
     "title: A new scene\n"
     "render: {width: 800, height: 600, depth: 6}\n"
@@ -437,7 +439,21 @@ static const char initial_scene[] =
     "solids:\n"
     "  ground: {shape: plane, material: paving}\n";
 
-status new_scene(scene **out, diagnostic *why)
+/* One scene unit is a centimetre; objects stand on the table, and beams run at a height of 2.5. */
+static const char bench_scene[] =
+    "title: Free experiment\n"
+    "render: {width: 800, height: 600, depth: 8, unit_m: 0.01}\n"
+    "camera: {position: [-6, 19, -36], target: [0, 2.5, 0], fov_deg: 40}\n"
+    "background: {kind: gradient, color: [0.3, 0.45, 0.65], horizon: [0.86, 0.9, 0.94]}\n"
+    "materials:\n"
+    "  board: {color: [0.74, 0.76, 0.78], ambient: 0.3, diffuse: 0.6, checker: 5, checker_color: [0.62, 0.65, 0.68]}\n"
+    "lights:\n"
+    "  lamp: {position: [-25, 45, -35]}\n"
+    "solids:\n"
+    "  table: {shape: plane, material: board}\n";
+
+status new_scene(bool bench, scene **out, diagnostic *why)
 {
-    return scene_read_text("", initial_scene, sizeof initial_scene - 1, out, why);
+    return bench ? scene_read_text("", bench_scene, sizeof bench_scene - 1, out, why)
+                 : scene_read_text("", initial_scene, sizeof initial_scene - 1, out, why);
 }

@@ -57,8 +57,8 @@ status scene_read(const char *path, scene **out, diagnostic *why);
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
 /* Reads the text of a scene file; name is used in diagnostics, and paths are relative to its folder. */
 status scene_read_text(const char *name, const char *text, size_t size, scene **out, diagnostic *why);
-/* The initial scene of an editor: a floor, a light and a camera. */
-status new_scene(scene **out, diagnostic *why);
+/* The initial scene of an editor: a floor, a light and a camera. bench: of an optical bench, in centimetres. */
+status new_scene(bool bench, scene **out, diagnostic *why);
 
 /* --- defined in assets/load.c --- */
 

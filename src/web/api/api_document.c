@@ -330,10 +330,12 @@ status api_open(call *c)
 {
     const char *name = NULL, *link = NULL, *lens = NULL, *text = NULL;
     char note[LENS_NOTE_MAX] = "";
-    bool fresh = false;
+    const json_t *word = json_object_get(c->body, "new");
+    const bool bench = json_is_string(word) && strcmp(json_string_value(word), "bench") == 0;
+    bool fresh = bench;
     scene *s = NULL;
     uint64_t generation = 0;
-    if (!api_read_flag(c, "new", &fresh) || !api_read_text(c, "link", false, &link) ||
+    if ((!bench && !api_read_flag(c, "new", &fresh)) || !api_read_text(c, "link", false, &link) ||
         !api_read_text(c, "lens", false, &lens) || !api_read_text(c, "text", lens != NULL, &text) ||
         !api_read_text(c, "file", !fresh && !link && !lens, &name))
         return STATUS_BAD_INPUT;
@@ -341,7 +343,7 @@ status api_open(call *c)
         return api_refuse(c, 400, "'file', 'new', 'link' and 'lens' cannot be combined", "give only one of them");
     if (link && !shared_is_link(link))
         return api_refuse(c, 400, "the link holds no scene", "give a link with #scene=CODE");
-    TRY(fresh  ? new_scene(&s, &c->why)
+    TRY(fresh  ? new_scene(bench, &s, &c->why)
         : link ? shared_read_link(link, &s, &c->why)
         : lens ? api_lens_file(lens, text, folder_real(c->l->files), &s, note, &c->why)
                : read_scene(c, name, &s, note));

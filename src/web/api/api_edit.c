@@ -335,14 +335,15 @@ static status read_new(call *c, edit *e, scene **loaded)
 status api_add(call *c)
 {
     edit e = {.act = add_object, .files = c->l->files};
+    const char *gesture = NULL;
     scene *loaded = NULL;
-    status code = read_new(c, &e, &loaded);
+    status code = api_read_gesture(c, &gesture) ? read_new(c, &e, &loaded) : STATUS_BAD_INPUT;
     e.loaded = loaded;
     THEN(code, apply(c, &e, "add",
                      e.requested_name               ? e.requested_name
                      : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
                                                     : e.word,
-                     NULL));
+                     gesture));
     scene_destroy(loaded);
     return code;
 }
