@@ -140,14 +140,11 @@ export const cases = {
     const first = await names(lab);
     const added = ['Box', 'Sphere', 'Cylinder', 'Cup', 'Plane', 'Torus', 'Cone', 'Prism', 'Lens', 'Mesh', 'Light'];
     added.push('Material');
+    const others = screen.page.locator('details', { hasText: 'Other shapes, lights and files' });
+    await others.locator('summary').click();
     for (const shape of added) {
       const known = await names(lab);
-      const { trouble } = await change(screen, () =>
-        screen.page
-          .getByRole('tabpanel', { name: 'Objects' })
-          .getByRole('button', { name: shape, exact: true })
-          .click(),
-      );
+      const { trouble } = await change(screen, () => others.getByRole('button', { name: shape, exact: true }).click());
       t.more((await names(lab)).length, known.length, `${shape}: number of objects`);
       t.equal(trouble, null, `${shape}: error of the scene`);
     }

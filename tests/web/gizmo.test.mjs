@@ -157,6 +157,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
+    await screen.page.getByText('Other shapes, lights and files').click();
     const of = screen.page.getByRole('combobox', { name: 'New solids are of' });
     await of.selectOption('Water');
     await change(screen, () => screen.button('Sphere', true).click());

@@ -37,7 +37,10 @@ const list = [
     'Tab, arrow keys, R',
     'in the section: from object to object; a step of the grid, with Shift a tenth; turn by 5°, with Shift back',
   ],
-  ['A, G, N, 0, Escape', 'in the section: angles, grid, snap, show all; cancel a drag, clear the selection, close'],
+  [
+    'A, I, G, N, 0, Escape',
+    'in the section: angles, images, grid, snap, show all; cancel a drag, clear the selection, close',
+  ],
   ['F', 'while held: show the reference image A'],
   ['Home on the splitter', 'reset the width of the panels; arrow keys change it'],
 ];

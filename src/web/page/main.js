@@ -16,6 +16,7 @@ import { createTips } from './shared/tips.js';
 import { orbitTool } from './view/camera_moves.js';
 import { lightTool } from './view/point_handles.js';
 import { cameraBox } from './view/camera_box.js';
+import { glassOutline } from './view/glass_outline.js';
 import { acceptDrops, namesScene, openLink } from './shared/share.js';
 
 /* A panel that cannot be loaded does not affect the others. Bundlers follow only imports that are written out. */
@@ -45,6 +46,7 @@ async function start() {
   orbitTool(lab);
   lightTool(lab);
   cameraBox(at('view'), lab);
+  glassOutline(lab);
   lab.view.use('orbit');
   createDisplay(lab);
   createHead(at('head'), lab);

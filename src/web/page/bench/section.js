@@ -2,15 +2,18 @@
  * section`, the rays those of the scene's beams.
  *
  * exports: createSection(lab); sets lab.section:
- *   open(view?), close(), toggle()       view: 'top', 'front', 'side', 'axis' (of the selected solid); without it the
- *                                        plane in which the beams run
+ *   open(view?, {at, window}?), close(), toggle()     view: 'top', 'front', 'side', 'axis' (of the selected solid);
+ *                                        without it the plane in which the beams run; at: the plane's coordinate;
+ *                                        window: [u0, u1, v0, v1] to show
  *   shown                                whether it is open
  *   addBeam()                            adds a laser in the plane
- *   set(name, on)                        the switches 'angles', 'grid', 'snap'
+ *   place(), size()                      where a new thing goes, and its size: section_place.js
+ *   set(name, on)                        the switches 'angles', 'images', 'grid', 'snap'
  *   fit()                                shows all
  *   node                                 the drawing, an SVG element
  *   plane, port, areas, segments, hits   what is drawn, as in section_plane.js and section_rays.js; null before the
  *                                        first reply
+ *   images                               where the rays of beams meet: section_images.js
  *   drawn                                the generation of the outlines and rays that are shown
  *   draw(), ask()                        draws again; requests what is missing */
 
@@ -29,8 +32,11 @@ import {
 import { dot } from '../shared/vectors.js';
 import { segmentsOf } from './rays.js';
 import { sectionExports } from './section_export.js';
+import { createFormula } from './section_formula.js';
 import { createHand } from './section_hand.js';
-import { gridMarks, gridSteps, legendMarks, mediumFill, scaleMarks } from './section_marks.js';
+import { imageMarks, imagesOf } from './section_images.js';
+import { gridMarks, gridSteps, legendMarks, legendRoom, lightMarks, mediumFill, scaleMarks } from './section_marks.js';
+import { glassPlane, placeOf, sizeOf } from './section_place.js';
 import { axisName, createPort, flat } from './section_plane.js';
 import { hitMarks, hitName, hitsOf, rayMarks } from './section_rays.js';
 
@@ -53,7 +59,7 @@ const STRONG = 0.05; /* fraction of a ray below which a hit has no angles by its
 export function createSection(lab) {
   const port = createPort();
   const layers = Object.fromEntries(
-    ['grid', 'solids', 'rays', 'labels', 'hits', 'angles', 'hand'].map((name) => [
+    ['grid', 'solids', 'rays', 'lights', 'labels', 'images', 'hits', 'angles', 'hand'].map((name) => [
       name,
       svg('g', { class: `section-${name}` }),
     ]),
@@ -67,7 +73,7 @@ export function createSection(lab) {
       role: 'application',
       'aria-label':
         'Section of the scene. Tab goes from object to object; arrow keys move the selected object, R turns it, ' +
-        'otherwise they scroll; plus and minus magnify, 0 shows all, A shows angles, 2 returns to the image',
+        'otherwise they scroll; plus and minus magnify, 0 shows all, A shows angles, I images, 2 returns to the image',
     },
     Object.values(layers),
   );
@@ -77,6 +83,7 @@ export function createSection(lab) {
     angles: memory.get('section.angles', false),
     grid: memory.get('section.grid', true),
     snap: memory.get('section.snap', false),
+    images: memory.get('section.images', true),
   };
   const section = {
     node: drawing,
@@ -92,6 +99,7 @@ export function createSection(lab) {
     areas: [],
     segments: [],
     hits: [],
+    images: [],
     pinned: new Set(),
     drawn: 0,
     open,
@@ -100,12 +108,15 @@ export function createSection(lab) {
     set,
     fit,
     addBeam,
+    place: () => placeOf(lab, section),
+    size: () => sizeOf(lab, section),
     draw: later,
     ask,
   };
   lab.section = section;
   const bar = createBar(lab, section, { look, moveTo });
   const hand = createHand(lab, section, stage);
+  const formula = createFormula(lab, section, stage);
   const root = element('section', { class: 'section', 'aria-label': 'Section', hidden: true }, bar.node, stage);
   const host = lab.view.stage.parentElement;
   host.append(root);
@@ -131,9 +142,10 @@ export function createSection(lab) {
 
   /* --- open, close, plane --- */
 
-  /* The view in whose plane the rays of each beam stay best. */
-  async function usualView() {
+  /* The view in whose plane the rays of each beam stay best; without beams, through glass. */
+  async function usualPlane() {
     section.segments = await raysOf().catch(() => []);
+    if (!section.segments.length) return glassPlane(lab) || { view: 'front' };
     const spread = [0, 0, 0];
     for (const beam of new Set(section.segments.map((each) => each.beam))) {
       const mine = section.segments.filter((each) => each.beam === beam && each.one.weight >= STRONG);
@@ -144,11 +156,12 @@ export function createSection(lab) {
       }
     }
     const least = Math.min(...spread) + 1e-6;
-    return ['front', 'top', 'side'].find((view) => spread[AXIS_OF[view]] <= least);
+    return { view: ['front', 'top', 'side'].find((view) => spread[AXIS_OF[view]] <= least) };
   }
 
-  async function open(view) {
-    const first = view || (section.plane ? section.view : await usualView());
+  async function open(view, { at = null, window = null } = {}) {
+    const usual = view || section.plane ? { view: view || section.view, at } : await usualPlane();
+    const first = usual.view;
     if (!section.shown) {
       section.shown = true;
       section.view = first;
@@ -159,7 +172,12 @@ export function createSection(lab) {
       lab.emit('section', true);
       resize();
     }
-    look(first);
+    look(first, usual.at);
+    if (window) {
+      port.fit(window, legendRoom(port, []));
+      section.fitted = true;
+      ask();
+    }
     drawing.focus({ preventScroll: true });
   }
 
@@ -173,13 +191,13 @@ export function createSection(lab) {
     lab.view.stage.focus({ preventScroll: true });
   }
 
-  function look(view) {
+  function look(view, at = null) {
     if (view === 'axis' && lab.object(lab.choice?.name)?.kind !== 'solid') {
       lab.say('Select a solid: the plane then contains its axis.');
       bar.show();
       return;
     }
-    section.at = view === 'axis' ? null : throughChosen(AXIS_OF[view]);
+    section.at = view === 'axis' ? null : (at ?? throughChosen(AXIS_OF[view]));
     section.view = view;
     bar.show();
     fit();
@@ -304,7 +322,7 @@ export function createSection(lab) {
       if (beams) section.segments = beams;
       note('');
       if (!section.fitted) {
-        port.fit(extent);
+        port.fit(extent, legendRoom(port, areas));
         section.fitted = true;
         again = true; /* the window has another shape than the extent */
       }
@@ -349,6 +367,10 @@ export function createSection(lab) {
       const [x, y, width, height] = ['x', 'y', 'width', 'height'].map((name) => Number(plate.getAttribute(name)));
       return [x, y, x + width, y + height];
     });
+    section.images = options.images ? imagesOf(lab, plane, segments) : [];
+    replace(layers.lights, lightMarks(lab, port, plane));
+    replace(layers.images, imageMarks(port, section.images, section.room));
+    formula.show(section.images);
     section.hits = hitsOf(port, plane, segments).slice(0, HITS_MAX);
     drawHits();
     hand.draw();
@@ -426,10 +448,15 @@ export function createSection(lab) {
 /* --- the bar: plane, switches, window, exports --- */
 
 function createBar(lab, section, { look, moveTo }) {
-  const views = choiceOf({ label: 'Plane', choices: VIEWS, radios: true, value: 'front', onchange: look });
+  const views = choiceOf({ label: 'Plane', choices: VIEWS, radios: true, value: 'front', onchange: (to) => look(to) });
   const place = number({ label: 'at', value: 0, onchange: moveTo });
   const switches = [
     ['angles', 'Angles', 'Normal, angles of incidence and refraction at each hit (A); a click on a hit shows its own'],
+    [
+      'images',
+      'Images',
+      'Where rays meet or seem to come from, with their dashed extensions, and the lens formula (I)',
+    ],
     ['grid', 'Grid', 'A grid in scene units (G)'],
     ['snap', 'Snap', 'Move to the grid and turn by 5° (N); Shift does the opposite while dragging'],
   ].map(([name, label, title]) => {

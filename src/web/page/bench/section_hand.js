@@ -301,7 +301,7 @@ export function createHand(lab, section, stage) {
     const letter = event.key.toLowerCase();
     const { name, turns, key: hit } = event.target.dataset || {};
     const window = { '+': ZOOM, '=': ZOOM, '-': 1 / ZOOM }[event.key];
-    const toggled = { a: 'angles', g: 'grid', n: 'snap' }[letter];
+    const toggled = { a: 'angles', i: 'images', g: 'grid', n: 'snap' }[letter];
     if (event.key === 'Escape') escape();
     else if (window) {
       port.zoom(window);

@@ -2,12 +2,14 @@
  * exports:
  *   gridSteps(port) -> {minor, major}         scene units; the pointer snaps to minor
  *   gridMarks(port, plane, steps) -> {lines, labels}    SVG elements, under and over the solids
- *   legendMarks(port, areas) -> elements
+ *   legendMarks(port, areas) -> elements; legendRoom(port, areas) -> pixels that a narrow window keeps free for them
+ *   lightMarks(lab, port, plane) -> elements  of the lights in the window, and arrows to those outside
  *   scaleMarks(port, unitM) -> elements
  *   mediumFill(area) -> a CSS colour */
 
+import { say } from '../shared/language.js';
 import { digits, svg } from '../shared/ui.js';
-import { axisName, niceStep } from './section_plane.js';
+import { axisName, flat, niceStep } from './section_plane.js';
 
 const MINOR_PX = 14;
 const MAJOR_PX = 72;
@@ -61,6 +63,37 @@ export function gridMarks(port, { right, up }, { major, minor }) {
   };
 }
 
+const LAMP = 9;
+
+/* A lamp where a light is in the window, also if it is above or below the plane; at the edge, if it is outside. */
+export function lightMarks(lab, port, plane) {
+  const lights = (lab.scene?.objects || []).filter(({ kind }) => kind === 'light');
+  return lights.flatMap(({ name }) => {
+    const place = lab.param(`${name}.position`)?.value;
+    if (!place) return [];
+    const [u, v, away] = flat(plane, place);
+    const inside = (x, low, high) => Math.min(high, Math.max(low, x));
+    const [x, y] = [inside(port.x(u), 30, port.width - 30), inside(port.y(v), 30, port.height - 44)];
+    const outside = Math.hypot(x - port.x(u), y - port.y(v)) > 1;
+    const where = outside ? say('{name}, outside the window', { name }) : name;
+    const depth = Math.abs(away) * port.scale > 1 ? say('{name}, not in this plane', { name }) : where;
+    const rays = [0, 45, 90, 135, 180, 225, 270, 315].map((angle) => {
+      const [cos, sin] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
+      return `M${x + 7 * cos} ${y + 7 * sin}L${x + LAMP * 1.25 * cos} ${y + LAMP * 1.25 * sin}`;
+    });
+    return [
+      svg(
+        'g',
+        { class: `section-light${outside ? ' outside' : ''}` },
+        svg('title', {}, outside ? where : depth),
+        svg('circle', { cx: x, cy: y, r: 4.5 }),
+        svg('path', { d: rays.join('') }),
+        svg('text', { class: 'section-tick', x, y: y + 24, 'text-anchor': 'middle' }, name),
+      ),
+    ];
+  });
+}
+
 /* The scale bar: a round length with the length in metres that the scene gives it. */
 export function scaleMarks(port, unitM) {
   const length = niceStep(60 / port.scale);
@@ -98,6 +131,14 @@ export function mediumFill({ opaque, n, color }) {
 
 const shortened = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}…` : text);
 
+const NARROW = 600;
+
+export function legendRoom(port, areas) {
+  if (port.width >= NARROW) return 0;
+  const rows = new Set(areas.map((area) => (area.opaque ? area.solid : `${area.medium} ${area.n}`))).size;
+  return 24 + ROW * Math.min(4, Math.max(1, rows));
+}
+
 /* One row for each medium, with the names of its solids; opaque solids have one row each. */
 export function legendMarks(port, areas) {
   const rows = new Map();
@@ -106,7 +147,7 @@ export function legendMarks(port, areas) {
     if (!rows.has(key)) rows.set(key, { area, names: [] });
     rows.get(key).names.push(area.solid);
   }
-  const room = port.width < 600 ? 4 : 8;
+  const room = port.width < NARROW ? 4 : 8;
   const shown = [...rows.values()].slice(0, rows.size > room ? room - 1 : room);
   const lines = shown.map(({ area, names }) => {
     const solids = names.join(', ');

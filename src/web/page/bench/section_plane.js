@@ -10,7 +10,7 @@
  *   turnAbout(plane, degrees) -> [x, y, z]        the rotation from right to up, as angles about the world's x, y, z in
  *                                        this order
  *   createPort() -> port                 {u, v: the centre; scale: pixels per scene unit; width, height: pixels}
- *     port.x(u), port.y(v), port.at(x, y) -> [u, v], port.extent(margin) -> [u0, u1, v0, v1], port.fit(extent),
+ *     port.x(u), port.y(v), port.at(x, y) -> [u, v], port.extent(margin) -> [u0, u1, v0, v1], port.fit(extent, top),
  *     port.zoom(factor, x, y), port.pan(dx, dy)
  *   niceStep(least) -> the smallest of 1, 2, 5 times a power of ten that is not below */
 
@@ -76,10 +76,11 @@ export function createPort() {
     return [port.u - halfU, port.u + halfU, port.v - halfV, port.v + halfV];
   }
 
-  function fit([u0, u1, v0, v1]) {
+  /* top: pixels that stay free above. */
+  function fit([u0, u1, v0, v1], top = 0) {
+    if (port.width && port.height > top) port.scale = Math.min(port.width / (u1 - u0), (port.height - top) / (v1 - v0));
     port.u = (u0 + u1) / 2;
-    port.v = (v0 + v1) / 2;
-    if (port.width && port.height) port.scale = Math.min(port.width / (u1 - u0), port.height / (v1 - v0));
+    port.v = (v0 + v1 + top / port.scale) / 2;
   }
 
   function zoom(factor, px = port.width / 2, py = port.height / 2) {

@@ -5,6 +5,7 @@
  *   choice.choose(name)                 '' clears the selection
  *   choice.on(f)                        f() after another object is selected or the selected one has vanished
  *   choice.add(body)                    POST /api/objects; selects the new object
+ *   choice.addAll(bodies, name, gesture)    several, as one step of Undo; selects the one of that name
  *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)
  *                                       change the selected object; waiting changes of one gesture are merged
  *   choice.copy(), choice.remove(), choice.rename(to), choice.setMaterial(material or null)
@@ -35,6 +36,7 @@ export function createChoice(lab) {
     on: (listener) => listeners.add(listener),
     choose,
     add: addObject,
+    addAll,
     rename,
     remove,
     copy: () => added(lab.change(at('copy'), {})),
@@ -91,6 +93,11 @@ export function createChoice(lab) {
 
   function addObject(body) {
     return added(lab.change('/api/objects', body));
+  }
+
+  function addAll(bodies, name, gesture) {
+    const replies = Promise.all(bodies.map((body) => lab.change('/api/objects', { ...body, gesture })));
+    return added(replies.then((all) => ({ ...all[all.length - 1], name })));
   }
 
   async function rename(to) {

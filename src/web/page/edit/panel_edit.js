@@ -1,4 +1,4 @@
-/* The panel Objects: scene files, objects to add, the list of all objects, and the selected one. exports: panel. The
+/* The panel Objects: scene files, the palette of the bench, other objects to add, the list of all objects, and the selected one. exports: panel. The
  * tool Object selects and moves objects in the image. */
 
 import { share } from '../shared/share.js';
@@ -7,6 +7,7 @@ import { createChoice } from './object_choice.js';
 import { createDetails, presetChoices, presetValues } from './object_details.js';
 import { createList } from './object_list.js';
 import { createScenePads } from './object_pads.js';
+import { createPalette } from './palette.js';
 import { createMark, objectTool } from './object_tool.js';
 import { createFiles } from './scene_files.js';
 
@@ -78,8 +79,8 @@ function addButtons(lab) {
   const small = (label, act, icon) => button(label, act, { small: true, icon });
   const preset = presetField(lab);
   return group(
-    'Add',
-    { id: 'edit.add' },
+    'Other shapes, lights and files',
+    { id: 'edit.add', open: false },
     preset.node,
     shapeButtons(lab, preset),
     element(
@@ -101,6 +102,7 @@ function create(root, lab) {
   start(lab);
   root.append(
     fileButtons(lab),
+    createPalette(lab, choice),
     addButtons(lab),
     createList(lab, choice).node,
     createDetails(lab, choice, files).node,

@@ -5,6 +5,7 @@ import { thumbnail } from '../shared/images.js';
 import { name, named, returned, session } from '../shared/address.js';
 import { namesScene } from '../shared/share.js';
 import { element, empty, notice, replace } from '../shared/ui.js';
+import { freeCard } from './free_card.js';
 import { createLesson } from './lesson.js';
 
 let place = null;
@@ -57,6 +58,7 @@ async function gallery(lab) {
         ? element(
             'div',
             { class: 'lesson-cards' },
+            freeCard(lab),
             lessons.map((one) => card(lab, one)),
           )
         : empty('There are no lessons: the laboratory is not installed completely.'),

@@ -1,6 +1,10 @@
 /* The outlines of simple solids, seen along any direction: for convex parts the hull of their corners and rims.
  * exports: solidPoints(lab) -> [{name, points: [[[x,y,z]..]..]}]    for each solid, the points of each of its convex
  *                                                                   parts, in scene units;
+ *          solidRings(lab) -> [{name, parts: [[{corners, points: [[x,y,z]..]}..]..]}]   the same by rings; corners: 0
+ *                                                                   for a round one
+ *          isClear(lab, name)                       whether light passes through the solid
+ *          turned(point, [a, b, c]) -> point        rotated about x, then y, then z, by degrees
  *          hull(points) -> points                                   the convex hull of [u, v], counter-clockwise
  * Solids without outline (planes) or without a cheap one (meshes) are omitted. */
 
@@ -18,23 +22,42 @@ function ring([y, x, z, corners, from]) {
 }
 
 /* Rotates about x, then y, then z, the order of the scene's rotation. */
-function turn(point, [a, b, c]) {
-  const turned = (p, i, j, degrees) => {
+export function turned(point, [a, b, c]) {
+  const about = (p, i, j, degrees) => {
     const [sin, cos] = [Math.sin((degrees * Math.PI) / 180), Math.cos((degrees * Math.PI) / 180)];
     const q = [...p];
     q[i] = cos * p[i] - sin * p[j];
     q[j] = sin * p[i] + cos * p[j];
     return q;
   };
-  return turned(turned(turned(point, 1, 2, a), 2, 0, b), 0, 1, c);
+  return about(about(about(point, 1, 2, a), 2, 0, b), 0, 1, c);
+}
+
+/* A point of a solid's frame in the world; a solid that follows another one is placed in its frame. */
+function placed(lab, name, point) {
+  const of = (row) => lab.param(`${name}.${row}`)?.value || [0, 0, 0];
+  const leader = lab.param(`${name}.follows`)?.value;
+  const here = turned(point, of('rotation'));
+  return leader ? placed(lab, leader, add(here, of('offset'))) : add(here, of('position'));
+}
+
+export function solidRings(lab) {
+  return Object.entries(lab.scene?.outlines || {}).map(([name, parts]) => {
+    const made = (each) => ({ corners: each[3], points: ring(each).map((point) => placed(lab, name, point)) });
+    return { name, parts: parts.map((rings) => rings.map(made)) };
+  });
 }
 
 export function solidPoints(lab) {
-  return Object.entries(lab.scene?.outlines || {}).map(([name, parts]) => {
-    const of = (row) => lab.param(`${name}.${row}`)?.value || [0, 0, 0];
-    const placed = (point) => add(turn(point, of('rotation')), of('position'));
-    return { name, points: parts.map((rings) => rings.flatMap((each) => ring(each).map(placed))) };
-  });
+  return solidRings(lab).map(({ name, parts }) => ({
+    name,
+    points: parts.map((rings) => rings.flatMap(({ points }) => points)),
+  }));
+}
+
+export function isClear(lab, name) {
+  const of = (object) => lab.param(`${object}.transparency`)?.value;
+  return (of(name) ?? of(lab.object(name)?.material) ?? 0) > 0;
 }
 
 /* Andrew's monotone chain. */
