@@ -4,6 +4,7 @@
 #include "job/job.h"
 #include "lesson/lesson.h"
 #include "measure/topology.h"
+#include "render/inspect/beams.h"
 #include "scene/assets/slime.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -109,10 +110,119 @@ static status read_speedup(lesson_meter *m, const scene *s, lesson_value *out, d
     return code;
 }
 
+/* --- metrics of a beam, as NAME.image; their theory is a formula of the lesson ---
+ *
+ * NAME.image       distance from the beam's start to where the last parts of its two middle rays meet, or seem to;
+ *                  image.x, .y, .z: that place
+ * NAME.turn        angle between the first and the last direction of its first ray, degrees
+ * NAME.incidence.K angle of incidence of the first ray at its K-th surface, degrees
+ * NAME.share       fraction of the power of the first ray at the start of its last part
+ * NAME.reflectance at the first surface */
+
+typedef struct beam_reading {
+    const scene *s;
+    size_t name_length;
+    const char *metric; /* with the name */
+    vec3 start, origin[2], direction[2];
+    int found; /* rays of these */
+    double value;
+} beam_reading;
+
+static int strongest_child(const ray_tree *tree, int at)
+{
+    int best = RAY_NONE;
+    for (int i = tree->node[at].first_child; i != RAY_NONE; i = tree->node[i].next)
+        if (best == RAY_NONE || beam_fraction(&tree->node[i]) > beam_fraction(&tree->node[best]))
+            best = i;
+    return best;
+}
+
+/* Reads from the first ray; hits: 0, or the surface that is meant, from 1. */
+static double read_first(const ray_tree *tree, const char *what, int surface)
+{
+    const ray_node *now = tree->node, *first = now;
+    int at = 0, met = 0;
+    for (int child; now->end == RAY_END_HIT; now = &tree->node[at = child]) {
+        if (++met == surface && strncmp(what, "incidence", 9) == 0)
+            return acos(fmin(now->hit.cos_i, 1.0)) * 180.0 / M_PI;
+        if ((child = strongest_child(tree, at)) == RAY_NONE)
+            break;
+    }
+    if (strcmp(what, "reflectance") == 0)
+        return first->end == RAY_END_HIT ? first->hit.R : NAN;
+    if (strcmp(what, "share") == 0)
+        return beam_fraction(now) / beam_fraction(first);
+    const vec3 across = vec3_cross(first->direction, now->direction);
+    return strcmp(what, "turn") == 0
+               ? atan2(vec3_length(across), vec3_dot(first->direction, now->direction)) * 180.0 / M_PI
+               : NAN;
+}
+
+static status read_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    (void)p, (void)why;
+    beam_reading *b = context;
+    const char *name = b->s->beams[ray->beam].name, *what = b->metric + b->name_length + 1;
+    const int middle = (ray->rays - 1) / 2;
+    if (strlen(name) != b->name_length || strncmp(name, b->metric, b->name_length) != 0 || ray->field)
+        return STATUS_OK;
+    if (ray->number == 0) {
+        b->start = tree->node[0].origin;
+        b->value = read_first(tree, what, strncmp(what, "incidence.", 10) == 0 ? atoi(what + 10) : 0);
+    }
+    if (b->found < 2 && (ray->number == middle || ray->number == middle + 1)) {
+        int last = 0;
+        for (int child; (child = strongest_child(tree, last)) != RAY_NONE;)
+            last = child;
+        b->origin[b->found] = tree->node[last].origin;
+        b->direction[b->found++] = tree->node[last].direction;
+    }
+    return STATUS_OK;
+}
+
+/* The point of the first line that is nearest to the second one. */
+static vec3 meeting_point(const beam_reading *b)
+{
+    const vec3 normal = vec3_cross(b->direction[0], b->direction[1]), apart = vec3_sub(b->origin[1], b->origin[0]);
+    const double t = vec3_dot(vec3_cross(apart, b->direction[1]), normal) / vec3_dot(normal, normal);
+    return vec3_add(b->origin[0], vec3_scale(b->direction[0], t));
+}
+
+static status read_beam(const lesson *l, const scene *s, isa level, lesson_value *out, diagnostic *why)
+{
+    beam_reading b = {.s = s, .name_length = strcspn(l->metric, "."), .metric = l->metric, .value = NAN};
+    const char *what = l->metric[b.name_length] ? l->metric + b.name_length + 1 : "";
+    if (!what[0])
+        return diagnose(why, STATUS_BAD_INPUT, "write NAME.image, .turn, .incidence.1, .share or .reflectance",
+                        "'%.64s' is not a metric of a beam", l->metric);
+    scene *loaded = scene_clone(s);
+    status code = loaded ? scene_load(loaded, why) : out_of_memory(why);
+    if (code == STATUS_OK)
+        b.s = loaded, code = beams_each_ray(loaded, level, 0, read_ray, &b, why);
+    const bool meets = strncmp(what, "image", 5) == 0 && b.found == 2;
+    if (code == STATUS_OK && meets) {
+        const vec3 at = meeting_point(&b);
+        b.value = what[5] != '.'   ? vec3_length(vec3_sub(at, b.start))
+                  : what[6] == 'x' ? at.x
+                  : what[6] == 'y' ? at.y
+                                   : at.z;
+    }
+    scene_destroy(loaded);
+    THEN(code, lesson_formula(l, s, NAN, l->theory, &out->theory, why));
+    out->measured = b.value;
+    out->tolerance = l->tolerance;
+    if (code == STATUS_OK && isnan(b.value) && !b.found)
+        return diagnose(why, STATUS_BAD_INPUT, "name a visible beam of the lesson", "there is no beam for '%.64s'",
+                        l->metric);
+    return code;
+}
+
 static status lesson_metric(lesson_meter *m, const scene *s, lesson_value *out, diagnostic *why)
 {
     if (lesson_is_timed(m->l))
         return read_speedup(m, s, out, why);
+    if (m->l->theory)
+        return read_beam(m->l, s, m->level, out, why);
     return softbody_has_trial(m->l->metric) ? read_motion(m->l, s, m->level, out, why)
                                             : read_realism(m->l, s, m->level, out, why);
 }
@@ -200,6 +310,20 @@ static status read_value(lesson_meter *m, const scene *s, lesson_result *out, di
     return STATUS_OK;
 }
 
+/* The lesson's values, what the pupil should have measured by hand, and the right choice, in this scene. */
+static status follow_formulas(const lesson *l, const scene *s, lesson_result *out, diagnostic *why)
+{
+    double which = l->right + 1.0;
+    out->truth = NAN;
+    TRY(lesson_values(l, s, out->theory, out->values, why));
+    if (l->hand.tool != LESSON_NO_TOOL)
+        TRY(lesson_formula(l, s, out->theory, l->hand.truth, &out->truth, why));
+    if (l->which)
+        TRY(lesson_formula(l, s, out->theory, l->which, &which, why));
+    out->right = which >= 1.0 && which <= l->choice_count ? (int)which - 1 : l->right;
+    return STATUS_OK;
+}
+
 status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result *out, diagnostic *why)
 {
     lesson_meter m = {.l = l, .level = level};
@@ -215,6 +339,7 @@ status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result 
     else
         read_point(l, out);
     lesson_meter_release(&m);
+    THEN(code, follow_formulas(l, s, out, why));
     out->passes =
         out->error <= l->tolerance && (isnan(out->theory) || fabs(out->measured - out->theory) <= out->tolerance);
     return code;

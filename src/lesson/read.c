@@ -1,4 +1,4 @@
-/* Reads lessons. The grammar, in YAML; * marks keys that may be missing:
+/* Reads lessons, and finds their files. The grammar, in YAML; * marks keys that may be missing:
  *
  *   lesson: critical-angle           the name: letters, digits and -
  *   title: TEXT
@@ -6,12 +6,16 @@
  *   question: TEXT
  *   scene: ../scenes/rod.yaml        relative to this file
  *   set: {PARAMETER: VALUE, ..}      *
+ *   beams: {NAME: {KEY: VALUE, ..}, ..}     * added to the scene, as in a scene file
+ *   solids: {NAME: {shape: box, ..}, ..}    *
  *   controls:                        one to five
  *     - {parameter: liquid.ior, label: TEXT, from: 1.1, to: 1.6}
  *     - {parameter: liquid.medium, label: TEXT, choices: [water, ethanol]}
  *   prediction: {ask: TEXT, within: 3}                              a number, compared with the value to read
  *   prediction: {ask: TEXT, choices: [TEXT, ..], right: TEXT}       or a choice
  *     axis: x                        * the curve's axis of the predicted number; or y
+ *     which: FORMULA                 * the number of the right choice, from 1, for other values of the controls
+ *   values: {NAME: FORMULA, ..}      * shown in the answer as {NAME}
  *   measure:
  *     curve: mirror                  a curve of `cuvette realism --curve`; or
  *     over: liquid.ior               the metric at the values of this control
@@ -20,14 +24,22 @@
  *     unit: deg                      *
  *     metric: critical.liquid        a metric of `cuvette realism` or `cuvette motion`, or speedup; or
  *     at: 60                         the x at which the curve is read
+ *     theory: FORMULA                with a metric of a beam, such as light.image
+ *   show: {view: top, at: 0.6, window: [U0, U1, V0, V1], marks: [normals, angles, extensions]}     *
+ *   hand: {tool: protractor, ask: TEXT, unit: deg, truth: FORMULA, within: 2, place: [X, Y, Z]}   *
  *   answer: TEXT */
+#include "base/array.h"
 #include "base/file.h"
+#include "base/installed.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "lesson/lesson.h"
 #include "scene/data/document.h"
+#include "scene/model/edit/edit.h"
 #include "scene/model/params.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -36,14 +48,7 @@
 enum { TEXT_BYTES_MAX = 2000, NAME_BYTES_MAX = 64 };
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-typedef struct reader {
-    const document *file;
-    lesson *l;
-    const char *root;
-    diagnostic *why;
-} reader;
-
-static status read_text(const reader *r, const node *map, const char *key, bool needed, char **out)
+status lesson_read_text(const lesson_reader *r, const node *map, const char *key, bool needed, char **out)
 {
     const node *n = node_get(map, key);
     if (!n && !needed)
@@ -55,7 +60,7 @@ static status read_text(const reader *r, const node *map, const char *key, bool 
     return (*out = strdup(n->text)) ? STATUS_OK : out_of_memory(r->why);
 }
 
-static status read_number(const reader *r, const node *map, const char *key, double *out)
+status lesson_read_number(const lesson_reader *r, const node *map, const char *key, double *out)
 {
     const node *n = node_get(map, key);
     if (!n)
@@ -65,7 +70,7 @@ static status read_number(const reader *r, const node *map, const char *key, dou
     return STATUS_OK;
 }
 
-static status expect_map(const reader *r, const node *parent, const char *key, const node **out)
+status lesson_expect_map(const lesson_reader *r, const node *parent, const char *key, const node **out)
 {
     const node *n = node_get(parent, key);
     if (n && n->kind == NODE_MAP) {
@@ -76,8 +81,7 @@ static status expect_map(const reader *r, const node *parent, const char *key, c
                       n ? "'%s' has no keys" : "'%s' is missing", key);
 }
 
-/* Reports the error of a value or of the scene: bad input is located in the lesson, a failure of the machine is not. */
-static status relay(const reader *r, const node *at, status code, const char *remedy, const diagnostic *refused)
+status lesson_relay(const lesson_reader *r, const node *at, status code, const char *remedy, const diagnostic *refused)
 {
     if (code == STATUS_BAD_INPUT)
         return node_error(r->file, at, r->why, remedy, "%s", refused->what);
@@ -87,7 +91,7 @@ static status relay(const reader *r, const node *at, status code, const char *re
 }
 
 /* Reads a value as text. If the node is not a value, `error` and `remedy` are reported. */
-static status read_value(const reader *r, const node *n, const char *remedy, const char *error, char **out)
+static status read_value(const lesson_reader *r, const node *n, const char *remedy, const char *error, char **out)
 {
     if (!node_is_value(n))
         return node_error(r->file, n, r->why, remedy, "%s", error);
@@ -95,7 +99,7 @@ static status read_value(const reader *r, const node *n, const char *remedy, con
 }
 
 /* Reads a list of 2 to LESSON_CHOICES_MAX texts. */
-static status read_choices(const reader *r, const node *n, char **out, int *count)
+static status read_choices(const lesson_reader *r, const node *n, char **out, int *count)
 {
     if (n->kind != NODE_LIST || n->count < 2 || n->count > LESSON_CHOICES_MAX)
         return node_error(r->file, n, r->why, "write a list of 2 to 6 texts, such as [water, ethanol]",
@@ -107,48 +111,57 @@ static status read_choices(const reader *r, const node *n, char **out, int *coun
     return STATUS_OK;
 }
 
-static status try_value(const reader *r, scene *s, const node *at, const char *path, const char *value)
+static status try_value(const lesson_reader *r, scene *s, const node *at, const char *path, const char *value)
 {
     diagnostic refused = {.what = ""};
     const status code = scene_set(s, path, value, &refused);
-    return relay(r, at, code, refused.remedy, &refused);
+    return lesson_relay(r, at, code, refused.remedy, &refused);
 }
 
-static status try_range(const reader *r, scene *s, const node *n, const lesson_control *c)
+/* A value of a control, and of the parameter that goes with it. */
+static status try_control(const lesson_reader *r, scene *s, const node *n, const node *at, const lesson_control *c,
+                          const char *value)
+{
+    TRY(try_value(r, s, at, c->parameter, value));
+    return c->with ? try_value(r, s, node_get(n, "with"), c->with, value) : STATUS_OK;
+}
+
+static status try_range(const lesson_reader *r, scene *s, const node *n, const lesson_control *c)
 {
     const double ends[] = {c->from, c->to};
     const char *const keys[] = {"from", "to"};
     char text[NUMBER_TEXT_MAX];
     for (int i = 0; i < 2; i++)
-        TRY(try_value(r, s, node_get(n, keys[i]), c->parameter, number_format(ends[i], text)));
+        TRY(try_control(r, s, n, node_get(n, keys[i]), c, number_format(ends[i], text)));
     return c->from < c->to ? STATUS_OK
                            : node_error(r->file, node_get(n, "to"), r->why, "make 'to' greater than 'from'",
                                         "the range of %s is empty", c->parameter);
 }
 
-static status read_control(const reader *r, const node *n, scene *trial)
+static status read_control(const lesson_reader *r, const node *n, scene *trial)
 {
-    static const char *const keys[] = {"parameter", "label", "from", "to", "choices"};
+    static const char *const keys[] = {"parameter", "label", "with", "from", "to", "choices"};
     lesson_control *c = &r->l->control[r->l->control_count++];
     if (n->kind != NODE_MAP)
         return node_error(r->file, n, r->why, "write {parameter: liquid.ior, label: Index, from: 1, to: 2}",
                           "this is not a control");
     TRY(node_check_keys(r->file, n, keys, COUNT(keys), r->why));
-    TRY(read_text(r, n, "parameter", true, &c->parameter));
-    TRY(read_text(r, n, "label", true, &c->label));
+    TRY(lesson_read_text(r, n, "parameter", true, &c->parameter));
+    TRY(lesson_read_text(r, n, "label", true, &c->label));
+    TRY(lesson_read_text(r, n, "with", false, &c->with));
     const node *choices = node_get(n, "choices");
     if (!choices) {
-        TRY(read_number(r, n, "from", &c->from));
-        TRY(read_number(r, n, "to", &c->to));
+        TRY(lesson_read_number(r, n, "from", &c->from));
+        TRY(lesson_read_number(r, n, "to", &c->to));
         return try_range(r, trial, n, c);
     }
     TRY(read_choices(r, choices, c->choices, &c->choice_count));
     for (int i = 0; i < c->choice_count; i++)
-        TRY(try_value(r, trial, choices->items[i], c->parameter, c->choices[i]));
+        TRY(try_control(r, trial, n, choices->items[i], c, c->choices[i]));
     return STATUS_OK;
 }
 
-static status read_controls(const reader *r, const node *root)
+static status read_controls(const lesson_reader *r, const node *root)
 {
     const node *list = node_get(root, "controls");
     if (!list || list->kind != NODE_LIST || list->count < 1 || list->count > LESSON_CONTROLS_MAX)
@@ -174,11 +187,11 @@ static char *short_path(const char *path)
     return strdup(below ? real + length + 1 : real);
 }
 
-static status read_scene(const reader *r, const node *root)
+static status read_scene(const lesson_reader *r, const node *root)
 {
     lesson *l = r->l;
     char *name = NULL;
-    TRY(read_text(r, root, "scene", true, &name));
+    TRY(lesson_read_text(r, root, "scene", true, &name));
     char *joined = name[0] == '/' ? strdup(name) : file_next_to(l->path, name);
     l->scene_path = joined ? short_path(joined) : NULL;
     free(joined);
@@ -197,7 +210,7 @@ static status read_scene(const reader *r, const node *root)
                       "scene %.200s: %.200s", l->scene_path, refused.what);
 }
 
-static status read_settings(const reader *r, const node *root)
+static status read_settings(const lesson_reader *r, const node *root)
 {
     lesson *l = r->l;
     const node *map = node_get(root, "set");
@@ -221,7 +234,55 @@ static status read_settings(const reader *r, const node *root)
     return STATUS_OK;
 }
 
-static status read_axis(const reader *r, const node *n)
+static status add_object(const lesson_reader *r, const node *name, const node *map, bool is_solid)
+{
+    lesson *l = r->l;
+    diagnostic refused = {.what = ""};
+    const node *shape = node_get(map, "shape");
+    if (map->kind != NODE_MAP)
+        return node_error(r->file, map, r->why, "write keys and values, as in a scene file", "'%.64s' has no keys",
+                          name->text);
+    shape_kind kind = SHAPE_BOX;
+    if (is_solid && shape && shape->kind == NODE_SCALAR)
+        TRY(lesson_relay(r, shape, scene_shape_named(shape->text, &kind, &refused), refused.remedy, &refused));
+    const status code = is_solid ? scene_add_solid(l->start, name->text, kind, NULL, &refused)
+                                 : scene_add(l->start, PARAM_BEAM, name->text, NULL, &refused);
+    TRY(lesson_relay(r, name, code, refused.remedy, &refused));
+    l->added[l->added_count] = strdup(name->text);
+    if (!l->added[l->added_count++])
+        return out_of_memory(r->why);
+    for (size_t i = 0; i < map->count; i++) {
+        char *value = NULL;
+        TRY(read_value(r, map->items[i], "write a number, a word or a list", "this is not a value", &value));
+        char *path = text_format("%s.%s", name->text, map->keys[i]->text);
+        const status set = path ? scene_set_property(l->start, path, value, &refused) : out_of_memory(&refused);
+        free(path);
+        free(value);
+        TRY(lesson_relay(r, map->items[i], set, refused.remedy, &refused));
+    }
+    return STATUS_OK;
+}
+
+/* The beams and solids that the lesson adds to its scene. */
+static status read_added(const lesson_reader *r, const node *root)
+{
+    static const char *const sections[] = {"solids", "beams"};
+    for (size_t k = 0; k < COUNT(sections); k++) {
+        const node *map = node_get(root, sections[k]);
+        if (!map)
+            continue;
+        if (map->kind != NODE_MAP)
+            return node_error(r->file, map, r->why, "write {NAME: {KEY: VALUE}}", "'%s' has no keys", sections[k]);
+        size_t room = r->l->added_count;
+        if (!GROW(r->l->added, room, room + map->count + 1))
+            return out_of_memory(r->why);
+        for (size_t i = 0; i < map->count; i++)
+            TRY(add_object(r, map->keys[i], map->items[i], k == 0));
+    }
+    return STATUS_OK;
+}
+
+static status read_axis(const lesson_reader *r, const node *n)
 {
     const node *axis = node_get(n, "axis");
     if (!axis)
@@ -232,18 +293,19 @@ static status read_axis(const reader *r, const node *n)
     return STATUS_OK;
 }
 
-static status read_prediction(const reader *r, const node *root)
+static status read_prediction(const lesson_reader *r, const node *root)
 {
-    static const char *const keys[] = {"ask", "choices", "right", "within", "axis"};
+    static const char *const keys[] = {"ask", "choices", "right", "which", "within", "axis"};
     lesson *l = r->l;
     const node *n = NULL;
-    TRY(expect_map(r, root, "prediction", &n));
+    TRY(lesson_expect_map(r, root, "prediction", &n));
     TRY(node_check_keys(r->file, n, keys, COUNT(keys), r->why));
-    TRY(read_text(r, n, "ask", true, &l->ask));
+    TRY(lesson_read_text(r, n, "ask", true, &l->ask));
     TRY(read_axis(r, n));
+    TRY(lesson_read_formula(r, n, "which", false, &l->which));
     const node *choices = node_get(n, "choices"), *right = node_get(n, "right");
     if (!choices)
-        return read_number(r, n, "within", &l->answer_within);
+        return lesson_read_number(r, n, "within", &l->answer_within);
     TRY(read_choices(r, choices, l->choices, &l->choice_count));
     for (l->right = 0; right && right->kind == NODE_SCALAR && l->right < l->choice_count; l->right++)
         if (strcmp(l->choices[l->right], right->text) == 0)
@@ -252,127 +314,45 @@ static status read_prediction(const reader *r, const node *root)
                       "'right' is none of the choices");
 }
 
-static status read_curve(const reader *r, const node *n)
-{
-    const node *curve = node_get(n, "curve");
-    const char *names[REALISM_CURVE_COUNT];
-    for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
-        names[i] = realism_curve_name((realism_curve)i);
-        if (curve && curve->kind == NODE_SCALAR && strcmp(curve->text, names[i]) == 0) {
-            r->l->curve = (realism_curve)i;
-            return STATUS_OK;
-        }
-    }
-    const char *near = curve && curve->kind == NODE_SCALAR ? text_nearest(curve->text, names, COUNT(names)) : NULL;
-    char remedy[96];
-    snprintf(remedy, sizeof remedy, near ? "did you mean '%s'?" : "'cuvette realism --help' lists the curves", near);
-    return node_error(r->file, curve ? curve : n, r->why, remedy,
-                      curve ? "unknown curve '%.64s'" : "'curve' is missing%s",
-                      curve && curve->kind == NODE_SCALAR ? curve->text : "");
-}
-
-/* The values of a control on the x axis must be numbers. A range requires a parameter that is not an integer, so a
- * value with decimals is tried. */
-static status try_over(const reader *r, const node *at, const lesson_control *c)
-{
-    double number;
-    char text[NUMBER_TEXT_MAX];
-    for (int i = 0; i < c->choice_count; i++)
-        if (!number_parse_real(c->choices[i], &number))
-            return node_error(r->file, at, r->why, "choose a control whose values are numbers",
-                              "'%.64s', a choice of %.128s, is not a number", c->choices[i], c->parameter);
-    if (c->choice_count)
-        return STATUS_OK;
-    scene *trial = scene_clone(r->l->start);
-    diagnostic refused = {.what = ""};
-    status code = trial ? STATUS_OK : out_of_memory(&refused);
-    THEN(code, scene_set(trial, c->parameter, number_format(c->from + (c->to - c->from) / M_PI, text), &refused));
-    scene_destroy(trial);
-    return relay(r, at, code, "give the control's values as choices", &refused);
-}
-
-static status read_over(const reader *r, const node *measure, const node *over)
-{
-    lesson *l = r->l;
-    if (node_get(measure, "curve") || node_get(measure, "at"))
-        return node_error(r->file, over, r->why, "give either 'curve', or 'over' with 'metric'",
-                          "'over' cannot be combined with 'curve' or 'at'");
-    for (l->over = 0; over->kind == NODE_SCALAR && l->over < l->control_count; l->over++)
-        if (strcmp(l->control[l->over].parameter, over->text) == 0)
-            return try_over(r, over, &l->control[l->over]);
-    return node_error(r->file, over, r->why, "write the parameter of one of the controls",
-                      "'over' is none of the controls");
-}
-
-/* Times have no tolerance. */
-static status read_tolerance(const reader *r, const node *n)
-{
-    const node *tolerance = node_get(n, "tolerance");
-    if (!lesson_is_timed(r->l))
-        return read_number(r, n, "tolerance", &r->l->tolerance);
-    r->l->tolerance = INFINITY;
-    return tolerance ? node_error(r->file, tolerance, r->why, "remove 'tolerance'", "times have no tolerance")
-                     : STATUS_OK;
-}
-
-static status read_measure(const reader *r, const node *root)
-{
-    static const char *const keys[] = {"curve", "over", "tolerance", "reading", "unit", "metric", "at"};
-    lesson *l = r->l;
-    const node *n = NULL;
-    TRY(expect_map(r, root, "measure", &n));
-    TRY(node_check_keys(r->file, n, keys, COUNT(keys), r->why));
-    l->line = n->line;
-    l->column = n->column;
-    const node *over = node_get(n, "over"), *at = node_get(n, "at");
-    l->over = -1;
-    TRY(over ? read_over(r, n, over) : read_curve(r, n));
-    TRY(read_text(r, n, "metric", false, &l->metric));
-    TRY(read_tolerance(r, n));
-    TRY(read_text(r, n, "reading", true, &l->reading));
-    TRY(read_text(r, n, "unit", false, &l->unit));
-    if (!l->unit && !(l->unit = strdup("")))
-        return out_of_memory(r->why);
-    if (!l->metric == !at)
-        return node_error(r->file, n, r->why, "give either 'metric' or 'at'",
-                          at ? "'metric' and 'at' cannot be combined" : "the value to read is missing");
-    return at ? read_number(r, n, "at", &l->at) : STATUS_OK;
-}
-
 static bool is_name(const char *text)
 {
     const size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-");
     return length > 0 && length <= NAME_BYTES_MAX && !text[length];
 }
 
-static status read_root(const reader *r)
+static status read_root(const lesson_reader *r)
 {
-    static const char *const keys[] = {"lesson", "title",    "language",   "question", "scene",
-                                       "set",    "controls", "prediction", "measure",  "answer"};
+    static const char *const keys[] = {"lesson", "title",   "language", "question", "scene",
+                                       "set",    "beams",   "solids",   "controls", "prediction",
+                                       "values", "measure", "show",     "hand",     "answer"};
     lesson *l = r->l;
     const node *root = document_root(r->file);
     if (!root || root->kind != NODE_MAP)
         return diagnose_at(r->why, l->path, STATUS_BAD_INPUT,
                            "begin with lesson: NAME; cuvette-lesson(5) shows an example", "this is not a lesson");
     TRY(node_check_keys(r->file, root, keys, COUNT(keys), r->why));
-    TRY(read_text(r, root, "lesson", true, &l->name));
+    TRY(lesson_read_text(r, root, "lesson", true, &l->name));
     if (!is_name(l->name))
         return node_error(r->file, node_get(root, "lesson"), r->why, "use 1 to 64 letters, digits and -",
                           "invalid name of a lesson");
-    TRY(read_text(r, root, "title", true, &l->title));
-    TRY(read_text(r, root, "language", false, &l->language));
+    TRY(lesson_read_text(r, root, "title", true, &l->title));
+    TRY(lesson_read_text(r, root, "language", false, &l->language));
     if (!l->language && !(l->language = strdup("en")))
         return out_of_memory(r->why);
-    TRY(read_text(r, root, "question", true, &l->question));
-    TRY(read_text(r, root, "answer", true, &l->answer));
+    TRY(lesson_read_text(r, root, "question", true, &l->question));
+    TRY(lesson_read_text(r, root, "answer", true, &l->answer));
     TRY(read_scene(r, root));
     TRY(read_settings(r, root));
+    TRY(read_added(r, root));
     TRY(read_controls(r, root));
+    TRY(lesson_read_values(r, root));
     TRY(read_prediction(r, root));
-    TRY(read_measure(r, root));
+    TRY(lesson_read_measure(r, root));
+    TRY(lesson_read_show(r, root));
+    TRY(lesson_read_hand(r, root));
     diagnostic refused = {.what = ""};
     const status code = scene_check(l->start, &refused);
-    return relay(r, root, code, refused.remedy, &refused);
+    return lesson_relay(r, root, code, refused.remedy, &refused);
 }
 
 status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why)
@@ -385,7 +365,7 @@ status lesson_read_below(const char *path, const char *root, lesson **out, diagn
         return out_of_memory(why);
     }
     status code = document_read_below(path, root, &file, why);
-    THEN(code, read_root(&(reader){file, l, root, why}));
+    THEN(code, read_root(&(lesson_reader){file, l, root, why}));
     document_destroy(file);
     if (code == STATUS_OK)
         *out = l;
@@ -403,10 +383,18 @@ void lesson_destroy(lesson *l)
 {
     if (!l)
         return;
-    char *const texts[] = {l->path,       l->name, l->title,  l->language, l->question, l->answer,
-                           l->scene_path, l->ask,  l->metric, l->reading,  l->unit};
+    char *const texts[] = {l->path,       l->name,      l->title,    l->language,  l->question,  l->answer,
+                           l->scene_path, l->ask,       l->metric,   l->reading,   l->unit,      l->which,
+                           l->theory,     l->show.view, l->hand.ask, l->hand.unit, l->hand.truth};
     for (size_t i = 0; i < COUNT(texts); i++)
         free(texts[i]);
+    for (int i = 0; i < l->value_count; i++) {
+        free(l->value[i].name);
+        free(l->value[i].formula);
+    }
+    for (size_t i = 0; i < l->added_count; i++)
+        free(l->added[i]);
+    free(l->added);
     for (size_t i = 0; i < l->setting_count; i++)
         free(l->setting[i]);
     free(l->setting);
@@ -415,9 +403,60 @@ void lesson_destroy(lesson *l)
     for (int i = 0; i < l->control_count; i++) {
         free(l->control[i].parameter);
         free(l->control[i].label);
+        free(l->control[i].with);
         for (int k = 0; k < l->control[i].choice_count; k++)
             free(l->control[i].choices[k]);
     }
     scene_destroy(l->start);
     free(l);
+}
+
+/* --- files --- */
+
+char *lesson_folder(void)
+{
+    return installed_folder("experiments/lessons");
+}
+
+static bool is_lesson(const char *name)
+{
+    const char *ending = strrchr(name, '.');
+    return name[0] != '.' && ending && strcmp(ending, ".lesson") == 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+status lesson_list_find(const char *folder, lesson_list *out, diagnostic *why)
+{
+    *out = (lesson_list){.path = NULL};
+    DIR *d = opendir(folder);
+    if (!d)
+        return system_error(why, STATUS_BAD_INPUT, folder, "cannot be listed", errno, "give a folder with lessons");
+    status code = STATUS_OK;
+    for (const struct dirent *e; code == STATUS_OK && (e = readdir(d));) {
+        if (!is_lesson(e->d_name))
+            continue;
+        char *path = text_format("%s/%s", folder, e->d_name);
+        if (path && GROW(out->path, out->room, out->count + 1))
+            out->path[out->count++] = path;
+        else
+            free(path), code = out_of_memory(why);
+    }
+    closedir(d);
+    if (out->count > 1)
+        qsort(out->path, out->count, sizeof *out->path, by_name);
+    if (code != STATUS_OK)
+        lesson_list_release(out);
+    return code;
+}
+
+void lesson_list_release(lesson_list *l)
+{
+    for (size_t i = 0; i < l->count; i++)
+        free(l->path[i]);
+    free(l->path);
+    *l = (lesson_list){.path = NULL};
 }

@@ -156,6 +156,8 @@ static json_t *controls(const lesson *l)
     for (int i = 0; i < l->control_count; i++) {
         const lesson_control *c = &l->control[i];
         json_t *one = json_pack("{s:o,s:o}", "parameter", json_of_text(c->parameter), "label", json_of_text(c->label));
+        if (c->with)
+            json_add_as(&one, "with", json_of_text(c->with));
         if (c->choice_count)
             json_add_as(&one, "choices", texts(c->choices, c->choice_count));
         else
@@ -214,13 +216,51 @@ static json_t *commands(const lesson *l)
     return list;
 }
 
+static json_t *numbers(const double *x, int count)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < count; i++)
+        json_add(&list, json_of_real(x[i]));
+    return list;
+}
+
+/* What the section shows when the lesson opens. */
+static json_t *show(const lesson *l)
+{
+    const lesson_show *s = &l->show;
+    return json_pack("{s:o,s:o,s:o,s:b,s:b,s:b}", "view", json_of_text(s->view), "at", json_of_real(s->at), "window",
+                     s->has_window ? numbers(s->window, 4) : json_null(), "normals", (int)s->normals, "angles",
+                     (int)s->angles, "extensions", (int)s->extensions);
+}
+
+/* The measurement by hand, or null. */
+static json_t *hand(const lesson *l)
+{
+    static const char *const tools[] = {"", "protractor", "ruler", "screen"};
+    const lesson_hand *h = &l->hand;
+    if (h->tool == LESSON_NO_TOOL)
+        return json_null();
+    json_t *one = json_pack("{s:s,s:o,s:o,s:o,s:f,s:o}", "tool", tools[h->tool], "ask", json_of_text(h->ask), "unit",
+                            json_of_text(h->unit ? h->unit : ""), "truth", json_of_text(h->truth), "within", h->within,
+                            "place", numbers(h->place, 3));
+    if (h->tool == LESSON_PROTRACTOR)
+        json_add_as(&one, "arms", numbers(h->arms, 2));
+    if (h->tool == LESSON_RULER)
+        json_add_as(&one, "to", numbers(h->to, 3));
+    if (h->tool == LESSON_SCREEN)
+        json_add_all(
+            &one, json_pack("{s:s,s:o}", "reads", h->reads_power ? "power" : "distance", "from", numbers(h->from, 3)));
+    return one;
+}
+
 json_t *lesson_json(const lesson *l)
 {
-    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "name", json_of_text(l->name), "title",
-                     json_of_text(l->title), "language", json_of_text(l->language), "question",
-                     json_of_text(l->question), "scene", json_of_text(l->scene_path), "controls", controls(l),
-                     "prediction", prediction(l), "measure", measure(l), "answer", json_of_text(l->answer), "commands",
-                     commands(l));
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "added",
+                     texts(l->added, (int)l->added_count), "show", show(l), "hand", hand(l), "name",
+                     json_of_text(l->name), "title", json_of_text(l->title), "language", json_of_text(l->language),
+                     "question", json_of_text(l->question), "scene", json_of_text(l->scene_path), "controls",
+                     controls(l), "prediction", prediction(l), "measure", measure(l), "answer", json_of_text(l->answer),
+                     "commands", commands(l));
 }
 
 json_t *lesson_result_json(const lesson *l, const lesson_result *r)
@@ -230,7 +270,12 @@ json_t *lesson_result_json(const lesson *l, const lesson_result *r)
         const realism_point *p = &r->points.at[i];
         json_add(&points, json_pack("[o,o,o]", json_of_real(p->x), json_of_real(p->measured), json_of_real(p->theory)));
     }
-    return json_pack("{s:o,s:o,s:o,s:b,s:o,s:o,s:o}", "points", points, "error", json_of_real(r->error), "tolerance",
-                     json_of_real(l->tolerance), "passes", (int)r->passes, "measured", json_of_real(r->measured),
-                     "theory", json_of_real(r->theory), "value_tolerance", json_of_real(r->tolerance));
+    json_t *values = json_object();
+    for (int i = 0; i < l->value_count; i++)
+        json_add_as(&values, l->value[i].name, json_of_real(r->values[i]));
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:b,s:o,s:o,s:o}", "values", values, "truth", json_of_real(r->truth),
+                     "right", l->choice_count ? json_of_text(l->choices[r->right]) : json_null(), "points", points,
+                     "error", json_of_real(r->error), "tolerance", json_of_real(l->tolerance), "passes", (int)r->passes,
+                     "measured", json_of_real(r->measured), "theory", json_of_real(r->theory), "value_tolerance",
+                     json_of_real(r->tolerance));
 }
