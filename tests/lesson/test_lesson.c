@@ -125,6 +125,45 @@ static void four_times_the_stiffness_halves_the_period(void **state)
     free(r);
 }
 
+/* Angles in degrees, switches as 1 and 0, precedence. */
+static void formulas_have_values(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *formula;
+        double value;
+    } known[] = {
+        {"1 + 2 * 3 ^ 2 - 4 / -2", 21.0},      {"-2 ^ 2", -4.0},          {"sin(30) + atan(1)", 45.5},
+        {"(1 < 2) + (2 > 3)", 1.0},            {"vessel.visible", 1.0},    {"2 ^ 3 ^ 2", 512.0},
+        {"sqrt(liquid.ior ^ 2) + theory", 7.333}, {"exp(log(pi)) / pi", 1.0},
+    };
+    lesson *l = NULL;
+    diagnostic why = {.what = ""};
+    assert_int_equal(lesson_read("experiments/lessons/30-critical-angle.lesson", &l, &why), STATUS_OK);
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        double value = NAN;
+        if (lesson_formula(l, l->start, 6.0, known[i].formula, &value, &why) != STATUS_OK)
+            fail_msg("%s: %s", known[i].formula, why.what);
+        if (!(fabs(value - known[i].value) < 1e-12))
+            fail_msg("%s = %.17g", known[i].formula, value);
+    }
+    lesson_destroy(l);
+}
+
+/* Which choice is right follows the scene: behind a film of a smaller index the thinnest film is bright. */
+static void the_right_choice_follows_the_scene(void **state)
+{
+    (void)state;
+    static const char *const none[] = {NULL}, *const dense[] = {"soap.ior=1.8", NULL};
+    lesson_result *r = malloc(sizeof *r);
+    assert_non_null(r);
+    measure_with("78-soap", none, r);
+    assert_int_equal(r->right, 1);
+    measure_with("78-soap", dense, r);
+    assert_int_equal(r->right, 0);
+    free(r);
+}
+
 /* Times are not compared: the machine may be busy. */
 static void frames_are_timed_with_each_number_of_threads(void **state)
 {
@@ -159,6 +198,10 @@ static const char *const lines[] = {
     "prediction: {ask: Which angle?, within: 1}",
     "measure: {curve: mirror, tolerance: 1e-9, reading: Angle, metric: critical.liquid}",
     "answer: Because.",
+    "beams: {ray: {position: [0, 1, 0], direction: [1, 0, 0]}}",
+    "values: {n: liquid.ior, top: liquid.position.y + liquid.height}",
+    "show: {view: front, at: 0, window: [-1, 1, 0, 2], marks: [normals]}",
+    "hand: {tool: ruler, ask: How far?, truth: 2 * n, within: 1, place: [0, 1, 0], to: [1, 1, 0]}",
 };
 enum { LINES = sizeof lines / sizeof *lines };
 
@@ -228,6 +271,24 @@ static void wrong_lessons_are_refused(void **state)
         {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle}", "value to read is missing"},
         {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle, metric: critical.lid}",
          "no metric 'critical.lid'"},
+        {7, "measure: {curve: mirror, theory: n, tolerance: 1e-9, reading: Angle, metric: ray.turn}", "requires 'over'"},
+        {7, "measure: {over: liquid.ior, theory: n, tolerance: 1e-9, reading: Angle, metric: rai.turn}", "no beam"},
+        {9, "beams: {vessel: {position: [0, 1, 0]}}", "already in use"},
+        {9, "beams: {ray: {positon: [0, 1, 0]}}", "no parameter 'positon'"},
+        {10, "values: {theory: 1}", "invalid name"},
+        {10, "values: {n: liquid.iro}", "no parameter 'iro'"},
+        {10, "values: {n: m + 1}", "unknown name 'm'"},
+        {10, "values: {n: (1 + 2}", "')' is missing"},
+        {10, "values: {n: 1 2}", "unexpected '2'"},
+        {10, "values: {n: tg(45)}", "unknown function 'tg'"},
+        {11, "show: {view: below}", "unknown word for 'view'"},
+        {11, "show: {view: top, window: [0, 0, 0, 1]}", "the window is empty"},
+        {11, "show: {view: top, marks: [normal]}", "unknown mark"},
+        {11, "show: {veiw: top}", "unknown key 'veiw'"},
+        {12, "hand: {tool: rule, ask: How far?, truth: n, within: 1, place: [0, 1, 0]}", "unknown word for 'tool'"},
+        {12, "hand: {tool: ruler, ask: How far?, truth: n, within: 1, place: [0, 1]}", "invalid 'place'"},
+        {12, "hand: {tool: ruler, ask: How far?, truth: k, within: 1, place: [0, 1, 0], to: [1, 1, 0]}", "unknown name"},
+        {12, "hand: {tool: screen, ask: How far?, truth: n, within: 1, place: [0, 1, 0]}", "'reads' is missing"},
     };
     lesson *l = NULL;
     diagnostic why = {.what = ""};
@@ -252,6 +313,8 @@ int main(void)
         cmocka_unit_test(critical_angle_is_read_within_a_tenth_of_a_degree),
         cmocka_unit_test(the_focal_length_of_a_cylinder_is_measured_over_its_index),
         cmocka_unit_test(four_times_the_stiffness_halves_the_period),
+        cmocka_unit_test(formulas_have_values),
+        cmocka_unit_test(the_right_choice_follows_the_scene),
         cmocka_unit_test(frames_are_timed_with_each_number_of_threads),
         cmocka_unit_test(wrong_lessons_are_refused),
     };

@@ -1,5 +1,6 @@
 /* Camera rays: their number per pixel, sample positions, origins and directions. */
-#include "render/camera/camera_rays.h"
+#include "render/shade/kernels.h"
+#include "render/tracer/tracer.h"
 
 #include "optics/mueller.h"
 #include "render/shade/footprints.h"

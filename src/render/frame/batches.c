@@ -3,7 +3,8 @@
 
 #include "base/cancel.h"
 #include "measure/clock.h"
-#include "render/camera/camera_rays.h"
+#include "render/shade/kernels.h"
+#include "render/tracer/tracer.h"
 #include "render/shade/exposure.h"
 #include "render/shade/media.h"
 #include "render/shade/shading.h"

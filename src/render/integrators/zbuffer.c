@@ -2,7 +2,8 @@
  * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each tile is rasterised
  * before its rays start. */
 #include "base/lanes.h"
-#include "render/camera/camera_rays.h"
+#include "render/shade/kernels.h"
+#include "render/tracer/tracer.h"
 #include "render/shade/exposure.h"
 #include "render/shade/media.h"
 #include "render/shade/shading.h"

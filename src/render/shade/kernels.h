@@ -9,6 +9,7 @@
 #include "image/texture.h"
 #include "render/plan/plan.h"
 #include "render/tracer/groups.h"
+#include "render/tracer/integrator.h"
 
 /* --- shading --- */
 
@@ -120,3 +121,14 @@ typedef struct sampling_kernels {
 } sampling_kernels;
 
 ISA_DECLARE(const sampling_kernels, sampling_kernels)
+
+/* --- the camera rays of a pixel's samples (render/camera/camera_rays.c): functions of the tracer --- */
+
+/* The camera rays of each pixel: one per sample; with a spectral film, one per sample and wavelength. */
+camera_sampling camera_samples(const render_settings *r);
+
+/* Enqueues rays first .. first + count - 1 of a row of pixels that starts at x0. */
+void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count);
+
+/* The chief rays of any camera, through the image points (u, v). */
+void camera_chief_rays(const tracer *t, int count, const double *u, const double *v, camera_rays_out out);

@@ -6,7 +6,7 @@
  * its table of functions, most of which may be NULL. Each function is called once per frame, tile, batch or group,
  * never per ray. Integrators read and write the tracer (tracer.h) and call the functions of render/shade and
  * render/camera; several tables share intersect_nearest (shading.h), background_sky (exposure.h) and camera_samples
- * (camera_rays.h).
+ * (kernels.h).
  *
  * Order of calls in a frame: `prepare`; each step, by all workers and then by one; on each worker that gets a tile
  * `begin`, then for its tiles `tile`, and for its batches `intersect`, `background`, `place` and `shade`; `finish`;

@@ -5,6 +5,8 @@
  *   open(view?, {at, window}?), close(), toggle()     view: 'top', 'front', 'side', 'axis' (of the selected solid);
  *                                        without it the plane in which the beams run; at: the plane's coordinate;
  *                                        window: [u0, u1, v0, v1] to show
+ *   present(show or null)                opens what a lesson shows, as its `show` (cuvette-lesson(5)); null: ends it
+ *   tools                                protractor, ruler and screen (section_tools.js)
  *   shown                                whether it is open
  *   addBeam()                            adds a laser in the plane
  *   place(), size()                      where a new thing goes, and its size: section_place.js
@@ -39,6 +41,7 @@ import { gridMarks, gridSteps, legendMarks, legendRoom, lightMarks, mediumFill, 
 import { glassPlane, placeOf, sizeOf } from './section_place.js';
 import { axisName, createPort, flat } from './section_plane.js';
 import { hitMarks, hitName, hitsOf, rayMarks } from './section_rays.js';
+import { createTools } from './section_tools.js';
 
 const VIEWS = [
   ['top', 'Top'],
@@ -102,7 +105,10 @@ export function createSection(lab) {
     images: [],
     pinned: new Set(),
     drawn: 0,
+    marks: null /* {normals, angles, extensions}: of a lesson */,
+    window: null /* what "Show all" shows, in scene units; null: all */,
     open,
+    present,
     close,
     toggle: () => (section.shown ? close() : open()),
     set,
@@ -117,6 +123,7 @@ export function createSection(lab) {
   const bar = createBar(lab, section, { look, moveTo });
   const hand = createHand(lab, section, stage);
   const formula = createFormula(lab, section, stage);
+  const tools = createTools(lab, section);
   const root = element('section', { class: 'section', 'aria-label': 'Section', hidden: true }, bar.node, stage);
   const host = lab.view.stage.parentElement;
   host.append(root);
@@ -172,12 +179,7 @@ export function createSection(lab) {
       lab.emit('section', true);
       resize();
     }
-    look(first, usual.at);
-    if (window) {
-      port.fit(window, legendRoom(port, []));
-      section.fitted = true;
-      ask();
-    }
+    look(first, usual.at, window);
     drawing.focus({ preventScroll: true });
   }
 
@@ -191,7 +193,21 @@ export function createSection(lab) {
     lab.view.stage.focus({ preventScroll: true });
   }
 
-  function look(view, at = null) {
+  async function present(show) {
+    section.marks = show;
+    if (!show || show.view === 'image') {
+      section.window = null;
+      if (!show) tools.put();
+      close();
+      return;
+    }
+    section.plane = null;
+    section.pinned.clear();
+    await open(show.view, { at: show.at, window: show.window });
+  }
+
+  function look(view, at = null, window = null) {
+    section.window = window;
     if (view === 'axis' && lab.object(lab.choice?.name)?.kind !== 'solid') {
       lab.say('Select a solid: the plane then contains its axis.');
       bar.show();
@@ -227,7 +243,8 @@ export function createSection(lab) {
 
   function fit() {
     section.extent = null;
-    section.fitted = false;
+    section.fitted = Boolean(section.window);
+    if (section.window) port.fit(section.window, legendRoom(port, []));
     turned++;
     ask();
   }
@@ -374,6 +391,7 @@ export function createSection(lab) {
     section.hits = hitsOf(port, plane, segments).slice(0, HITS_MAX);
     drawHits();
     hand.draw();
+    tools.draw();
   }
 
   const solids = new Map();
@@ -434,13 +452,17 @@ export function createSection(lab) {
     layers.hits.replaceChildren(...nodes);
     if (focused) nodes.find((node) => node.dataset.key === focused)?.focus({ preventScroll: true });
     const full = hits.filter(({ key }) => pinned.has(key) || key === section.pointed);
-    const some = options.angles
-      ? hits.filter((mark) => !full.includes(mark) && mark.weight >= STRONG && !mark.aside).slice(0, ANGLES_MAX)
-      : [];
+    const { marks } = section;
+    const some =
+      options.angles || marks?.angles || marks?.normals
+        ? hits.filter((mark) => !full.includes(mark) && mark.weight >= STRONG && !mark.aside).slice(0, ANGLES_MAX)
+        : [];
     const room = [...section.room];
     layers.angles.replaceChildren(
       ...full.flatMap((mark) => hitMarks(port, plane, mark, { full: true, room })),
-      ...some.flatMap((mark) => hitMarks(port, plane, mark, { full: false, room })),
+      ...some.flatMap((mark) =>
+        hitMarks(port, plane, mark, { full: false, room, bare: !options.angles && !marks?.angles }),
+      ),
     );
   }
 }

@@ -5,8 +5,9 @@
  *   hitsOf(port, plane, segments) -> [{key, segment, hit, x, y, weight, aside}]  the hits in the window, strongest
  *                                  first; aside: the ray is not in the plane, and is drawn as its projection
  *   hitName(hit) -> text           for screen readers
- *   hitMarks(port, plane, hit, {full, room}) -> elements   full: with the indices, and all digits; room: boxes of
- *                                  labels that exist; none if a label would cover one of them, unless full */
+ *   hitMarks(port, plane, hit, {full, room, bare}) -> elements   full: with the indices, and all digits; room: boxes
+ *                                  of labels that exist; none if a label would cover one of them, unless full; bare:
+ *                                  only the normal */
 
 import { digits, svg } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
@@ -165,8 +166,10 @@ export function hitMarks(port, plane, mark, options) {
   const inside = [-normal[0], -normal[1]];
   const [x1, y1, x2, y2] = [normal, inside].flatMap(([x, y]) => [mark.x + NORMAL_PX * x, mark.y + NORMAL_PX * y]);
   const middle = (a, b) => unitOf([a[0] + b[0], a[1] + b[1]]) || a;
+  const line = svg('path', { class: 'section-normal', d: `M${round(x1)} ${round(y1)}L${round(x2)} ${round(y2)}` });
+  if (options.bare) return [line];
   const marks = [
-    svg('path', { class: 'section-normal', d: `M${round(x1)} ${round(y1)}L${round(x2)} ${round(y2)}` }),
+    line,
     arc(mark, normal, back, ARC_PX[0]),
     ...label(
       mark,

@@ -10,10 +10,14 @@ import { createLesson } from './lesson.js';
 
 let place = null;
 let lesson = null; /* the view of the chosen lesson; null in the gallery */
+let covers = true; /* the image: in the gallery */
 let loaded = false;
 let wanted = ''; /* the lesson that the page's address names */
 
-const cover = (on) => document.getElementById('workspace').classList.toggle('wide', on);
+function cover(on) {
+  covers = on;
+  document.getElementById('workspace').classList.toggle('wide', on);
+}
 
 /* The page has small images of the program's lessons (make page-images), in a page of one file as an element; for a
  * folder's own lessons the laboratory renders one. */
@@ -96,7 +100,7 @@ export const panel = {
   title: 'Lessons',
   css: 'lessons/panel_lessons.css',
   get wide() {
-    return !lesson;
+    return covers;
   },
   /* A laboratory that opens neither a file nor a link starts with the gallery. */
   start(lab) {
