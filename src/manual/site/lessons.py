@@ -1,6 +1,7 @@
 """Lessons as pages, from what `cuvette lesson show` prints: question, controls, prediction, curve, answer, command."""
 
 import json
+import re
 from html import escape
 
 from chart import chart
@@ -49,8 +50,15 @@ def answer(lesson):
     return ''.join([
         '<h2 id="answer">Measure, and compare</h2>\n<details>\n<summary>Show the curve and the answer</summary>\n',
         f'<p>The right prediction: <b>{escape(right)}</b>.</p>\n' if right else '',
-        measured(lesson), f'<p>{escape(lesson["answer"])}</p>\n</details>\n',
+        measured(lesson), f'<p>{escape(filled(lesson))}</p>\n</details>\n',
     ])
+
+
+def filled(lesson):
+    """The answer with the lesson's values in place of {NAME}."""
+    result = lesson['result']
+    values = {**result['values'], 'theory': result['theory'], 'measured': result['measured']}
+    return re.sub(r'\{(\w+)\}', lambda hole: f'{values[hole[1]]:.4g}', lesson['answer'])
 
 
 def measured(lesson):

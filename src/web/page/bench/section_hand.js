@@ -80,7 +80,9 @@ export function createHand(lab, section, stage) {
   function draw() {
     const { plane } = section;
     const wanted = [];
-    const beams = (lab.scene?.objects || []).filter(({ kind, name }) => kind === 'beam' && placeOf(name));
+    /* A beam that follows a solid has its place in that solid's frame. */
+    const free = (name) => placeOf(name) && !lab.param(`${name}.follows`)?.value;
+    const beams = (lab.scene?.objects || []).filter(({ kind, name }) => kind === 'beam' && free(name));
     for (const { name } of beams) wanted.push(startOf(name));
     const chosen = lab.choice?.name;
     if (chosen && movable(chosen) && directionOf(chosen) !== null) wanted.push(turnOf(chosen));

@@ -178,7 +178,7 @@ export function createTools(lab, section) {
   function draw() {
     drawBeyond();
     if (!parts || !section.plane || !port.width) return;
-    if (!tools.tool.placed) raise();
+    if (!tools.tool.placed && section.drawn >= lab.newestGeneration) raise();
     ({ protractor: drawProtractor, ruler: drawRuler, screen: drawScreen })[tools.tool.kind]();
   }
 
