@@ -133,9 +133,14 @@ static void formulas_have_values(void **state)
         const char *formula;
         double value;
     } known[] = {
-        {"1 + 2 * 3 ^ 2 - 4 / -2", 21.0},      {"-2 ^ 2", -4.0},          {"sin(30) + atan(1)", 45.5},
-        {"(1 < 2) + (2 > 3)", 1.0},            {"vessel.visible", 1.0},    {"2 ^ 3 ^ 2", 512.0},
-        {"sqrt(liquid.ior ^ 2) + theory", 7.333}, {"exp(log(pi)) / pi", 1.0},
+        {"1 + 2 * 3 ^ 2 - 4 / -2", 21.0},
+        {"-2 ^ 2", -4.0},
+        {"sin(30) + atan(1)", 45.5},
+        {"(1 < 2) + (2 > 3)", 1.0},
+        {"vessel.visible", 1.0},
+        {"2 ^ 3 ^ 2", 512.0},
+        {"sqrt(liquid.ior ^ 2) + theory", 7.333},
+        {"exp(log(pi)) / pi", 1.0},
     };
     lesson *l = NULL;
     diagnostic why = {.what = ""};
@@ -271,7 +276,8 @@ static void wrong_lessons_are_refused(void **state)
         {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle}", "value to read is missing"},
         {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle, metric: critical.lid}",
          "no metric 'critical.lid'"},
-        {7, "measure: {curve: mirror, theory: n, tolerance: 1e-9, reading: Angle, metric: ray.turn}", "requires 'over'"},
+        {7, "measure: {curve: mirror, theory: n, tolerance: 1e-9, reading: Angle, metric: ray.turn}",
+         "requires 'over'"},
         {7, "measure: {over: liquid.ior, theory: n, tolerance: 1e-9, reading: Angle, metric: rai.turn}", "no beam"},
         {9, "beams: {vessel: {position: [0, 1, 0]}}", "already in use"},
         {9, "beams: {ray: {positon: [0, 1, 0]}}", "no parameter 'positon'"},
@@ -287,7 +293,8 @@ static void wrong_lessons_are_refused(void **state)
         {11, "show: {veiw: top}", "unknown key 'veiw'"},
         {12, "hand: {tool: rule, ask: How far?, truth: n, within: 1, place: [0, 1, 0]}", "unknown word for 'tool'"},
         {12, "hand: {tool: ruler, ask: How far?, truth: n, within: 1, place: [0, 1]}", "invalid 'place'"},
-        {12, "hand: {tool: ruler, ask: How far?, truth: k, within: 1, place: [0, 1, 0], to: [1, 1, 0]}", "unknown name"},
+        {12, "hand: {tool: ruler, ask: How far?, truth: k, within: 1, place: [0, 1, 0], to: [1, 1, 0]}",
+         "unknown name"},
         {12, "hand: {tool: screen, ask: How far?, truth: n, within: 1, place: [0, 1, 0]}", "'reads' is missing"},
     };
     lesson *l = NULL;

@@ -10,7 +10,8 @@ function plan(name) {
     const d = p.map((x, axis) => x - plane.origin[axis]);
     return [dot(d, plane.right), dot(d, plane.up)];
   };
-  const angle = ({ along }, turned = 0) => (Math.atan2(dot(along, plane.up), dot(along, plane.right)) * 180) / Math.PI + turned;
+  const angle = ({ along }, turned = 0) =>
+    (Math.atan2(dot(along, plane.up), dot(along, plane.right)) * 180) / Math.PI + turned;
   const of = (beam, number = 0) => segments.filter((each) => each.beam === beam && each.ray.number === number);
   const last = (beam, number) => of(beam, number).at(-1).line;
   const end = ({ line }) => flat([0, 1, 2].map((axis) => line.from[axis] + line.along[axis] * line.end));
@@ -23,10 +24,20 @@ function plan(name) {
   };
   const normal = ([x, y, z]) => (Math.atan2(dot([x, y, z], plane.up), dot([x, y, z], plane.right)) * 180) / Math.PI;
   const dial = (at, first, second) => {
-    const to = (degrees) => [port.x(at[0]) + 150 * Math.cos((degrees * Math.PI) / 180), port.y(at[1]) - 150 * Math.sin((degrees * Math.PI) / 180)];
-    return [['0', port.x(at[0]), port.y(at[1])], ['1', ...to(first)], ['2', ...to(second)]];
+    const to = (degrees) => [
+      port.x(at[0]) + 150 * Math.cos((degrees * Math.PI) / 180),
+      port.y(at[1]) - 150 * Math.sin((degrees * Math.PI) / 180),
+    ];
+    return [
+      ['0', port.x(at[0]), port.y(at[1])],
+      ['1', ...to(first)],
+      ['2', ...to(second)],
+    ];
   };
-  const ruler = (a, b) => [['0', port.x(a[0]), port.y(a[1])], ['1', port.x(b[0]), port.y(b[1])]];
+  const ruler = (a, b) => [
+    ['0', port.x(a[0]), port.y(a[1])],
+    ['1', port.x(b[0]), port.y(b[1])],
+  ];
   const screen = ([u, v]) => [['all', port.x(u), port.y(v)]];
   const rays = {
     'broken-rod': () => dial(end(of('sight')[0]), angle(of('sight')[0].line), angle(of('sight')[2].line)),
@@ -41,11 +52,15 @@ function plan(name) {
     coin: () => dial(end(of('sight')[0]), 270, angle(of('sight')[1].line)),
     'critical-angle': () => {
       const first = segments.filter(({ one }) => one.level === 0 && one.node.hit?.tir);
-      const best = first.reduce((a, b) => (a.one.node.hit.snell.incidence_deg < b.one.node.hit.snell.incidence_deg ? a : b));
+      const best = first.reduce((a, b) =>
+        a.one.node.hit.snell.incidence_deg < b.one.node.hit.snell.incidence_deg ? a : b,
+      );
       return dial(end(best), 270, angle(best.line, 180));
     },
     window: () => {
-      const out = segments.filter(({ one }) => one.level === 0 && one.node.hit && !one.node.hit.tir && one.node.hit.solid === 'liquid');
+      const out = segments.filter(
+        ({ one }) => one.level === 0 && one.node.hit && !one.node.hit.tir && one.node.hit.solid === 'liquid',
+      );
       const far = out.map(end).reduce((a, b) => (b[0] > a[0] ? b : a));
       return ruler([0, far[1]], far);
     },
@@ -71,7 +86,9 @@ function plan(name) {
     slant: () => screen(along(of('laser')[1].line, 2)),
     plates: () => screen(flat([0, 0, 3.6])),
     'pale-glass': () => {
-      const up = segments.filter(({ one, line }) => one.level === 3 && one.node.kind === 'refract' && line.along[1] > 0)[0];
+      const up = segments.filter(
+        ({ one, line }) => one.level === 3 && one.node.kind === 'refract' && line.along[1] > 0,
+      )[0];
       return ruler(end(of('ray')[0]), flat(up.line.from));
     },
     slime: () => {
@@ -81,7 +98,13 @@ function plan(name) {
     threads: () => dial(flat(of('sight')[0].line.from), angle(of('sight', 0)[0].line), angle(of('sight', 8)[0].line)),
   }[name];
   const box = drawing.getBoundingClientRect();
-  return rays && { count: segments.length, hits: hits.length, to: rays().map(([which, x, y]) => [which, box.x + x, box.y + y]) };
+  return (
+    rays && {
+      count: segments.length,
+      hits: hits.length,
+      to: rays().map(([which, x, y]) => [which, box.x + x, box.y + y]),
+    }
+  );
 }
 
 export const handsOf = (screen, name) => screen.page.evaluate(plan, name);
@@ -91,7 +114,9 @@ export async function measureByHand(screen, { to }) {
   const { mouse } = screen.page;
   for (const [which, x, y] of to) {
     const from = await screen.page.evaluate((handle) => {
-      const node = document.querySelector(`.section-tools [data-handle="${handle}"] .knob, .section-tools path[data-handle="${handle}"]`);
+      const node = document.querySelector(
+        `.section-tools [data-handle="${handle}"] .knob, .section-tools path[data-handle="${handle}"]`,
+      );
       const box = node.getBoundingClientRect();
       return [box.x + box.width / 2, box.y + box.height / 2];
     }, which);

@@ -86,7 +86,10 @@ export const cases = {
       t.check(!/[{}–]/.test(await answer.innerText()), `${lesson.name}: the answer has its values`);
       await byHand(t, screen, lesson);
       const box = await answer.boundingBox();
-      t.check(box.y + box.height < 742, `${lesson.name}: the answer is visible without scrolling: ${box.y + box.height}`);
+      t.check(
+        box.y + box.height < 742,
+        `${lesson.name}: the answer is visible without scrolling: ${box.y + box.height}`,
+      );
       const least = lesson.measure.timed ? 5 : 9; /* markers: one a number of threads */
       const markers = panel(screen).locator('.theory-chart .plot-marker');
       await markers.nth(least - 1).waitFor({ state: 'attached' });

@@ -3,11 +3,11 @@
 
 #include "base/cancel.h"
 #include "measure/clock.h"
-#include "render/shade/kernels.h"
-#include "render/tracer/tracer.h"
 #include "render/shade/exposure.h"
+#include "render/shade/kernels.h"
 #include "render/shade/media.h"
 #include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 
 /* In a depth buffer, the view's continuation behind a layer is not counted as another ray. */
 static bool is_counted(const tracer *t, int depth)

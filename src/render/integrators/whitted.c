@@ -2,11 +2,11 @@
  * and, if render.lighting enables them, both branches of each ray, reflected and refracted, with their weights. Ray
  * casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968) is its first level: the
  * local light of camera rays' hits, with shadows, and no secondary rays. */
-#include "render/shade/kernels.h"
-#include "render/tracer/tracer.h"
 #include "render/shade/exposure.h"
+#include "render/shade/kernels.h"
 #include "render/shade/light_sampling.h"
 #include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 
 /* Computes the branches of the gathered group; false if it has none. */
 static bool make_branches(tracer *t, bool opaque)

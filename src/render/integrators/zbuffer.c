@@ -2,11 +2,11 @@
  * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each tile is rasterised
  * before its rays start. */
 #include "base/lanes.h"
-#include "render/shade/kernels.h"
-#include "render/tracer/tracer.h"
 #include "render/shade/exposure.h"
+#include "render/shade/kernels.h"
 #include "render/shade/media.h"
 #include "render/shade/shading.h"
+#include "render/tracer/tracer.h"
 #include "render/zbuffer/zbuffer_private.h"
 #include <stdlib.h>
 #include <string.h>

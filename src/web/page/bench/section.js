@@ -40,7 +40,7 @@ import { imageMarks, imagesOf } from './section_images.js';
 import { gridMarks, gridSteps, legendMarks, legendRoom, lightMarks, mediumFill, scaleMarks } from './section_marks.js';
 import { glassPlane, placeOf, sizeOf } from './section_place.js';
 import { axisName, createPort, flat } from './section_plane.js';
-import { hitMarks, hitName, hitsOf, rayMarks } from './section_rays.js';
+import { extensionMarks, hitMarks, hitName, hitsOf, rayMarks } from './section_rays.js';
 import { createTools } from './section_tools.js';
 
 const VIEWS = [
@@ -62,7 +62,7 @@ const STRONG = 0.05; /* fraction of a ray below which a hit has no angles by its
 export function createSection(lab) {
   const port = createPort();
   const layers = Object.fromEntries(
-    ['grid', 'solids', 'rays', 'lights', 'labels', 'images', 'hits', 'angles', 'hand'].map((name) => [
+    ['grid', 'solids', 'rays', 'beyond', 'lights', 'labels', 'images', 'hits', 'angles', 'hand'].map((name) => [
       name,
       svg('g', { class: `section-${name}` }),
     ]),
@@ -378,6 +378,7 @@ export function createSection(lab) {
     replace(layers.grid, grid.lines);
     drawSolids();
     replace(layers.rays, rayMarks(port, plane, segments));
+    replace(layers.beyond, section.marks?.extensions ? extensionMarks(port, plane, segments) : []);
     const legend = legendMarks(port, areas);
     replace(layers.labels, grid.labels, scaleMarks(port, section.unitM), legend);
     section.room = legend.slice(0, 1).map((plate) => {

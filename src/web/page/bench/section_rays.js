@@ -2,6 +2,7 @@
  * angles and refractive indices.
  * exports:
  *   rayMarks(port, plane, segments) -> elements
+ *   extensionMarks(port, plane, segments) -> elements   dashed lines backwards from rays that leave the scene
  *   hitsOf(port, plane, segments) -> [{key, segment, hit, x, y, weight, aside}]  the hits in the window, strongest
  *                                  first; aside: the ray is not in the plane, and is drawn as its projection
  *   hitName(hit) -> text           for screen readers
@@ -16,6 +17,7 @@ import { flat } from './section_plane.js';
 
 const LINES_MAX = 3000;
 const LIGHTEST = 0.001; /* fraction of a ray's power below which its branches are not drawn */
+const EXTENDED = 0.05; /* fraction of a ray's power from which it is extended backwards */
 const IN_PLANE = 1e-3; /* distance from the plane, in heights of the window */
 const ARROW_PX = 7;
 const ARROW_LEAST_PX = 44; /* shorter pieces have no arrowhead */
@@ -83,6 +85,17 @@ export function rayMarks(port, plane, segments) {
     node.style.setProperty('stroke', inkOf(segment.ray.displayed));
     node.dataset.beam = segment.beam;
     return [node];
+  });
+}
+
+export function extensionMarks(port, plane, segments) {
+  const axes = { u: plane.right, v: plane.up };
+  const last = segments.filter(({ one }) => !one.node.hit && one.level > 0 && one.weight >= EXTENDED);
+  return last.flatMap(({ line }) => {
+    const back = { from: line.from, along: line.along.map((x) => -x), end: Infinity };
+    const ends = flatLine(back, axes, frameOf(port));
+    const points = ends?.map(([u, v]) => [port.x(u), port.y(v)].map(round).join(' '));
+    return ends ? [svg('path', { d: `M${points.join('L')}` })] : [];
   });
 }
 

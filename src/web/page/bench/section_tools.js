@@ -6,15 +6,13 @@
  *   put()                                        takes it away
  *   tool                                         {kind, points, arms, ..} in world space, or null
  *   power                                        percent of the beams' power that a screen receives; null: not known
- *   reading                                      degrees, scene units, or percent of the beams' power; null: none yet
- *   on(f)                                        f() is called when the reading changes; returns a function that ends it
- *   draw()
- * The lines of extensions, dashed backwards from rays that leave the scene, are drawn here too. */
+ *   reading                                      degrees, scene units, or percent of the power; null: none yet
+ *   on(f)                                        f() is called when the reading changes; returns its end
+ *   draw() */
 
 import { digits, element, svg, write } from '../shared/ui.js';
 import { say } from '../shared/language.js';
 import { add, dot, length, minus, unit } from '../shared/vectors.js';
-import { flatLine } from './ray_tree.js';
 import { flat, placed } from './section_plane.js';
 
 const DIAL_PX = 118;
@@ -33,7 +31,6 @@ const between = (a, b) => Math.abs(((((a - b) % 360) + 540) % 360) - 180);
 export function createTools(lab, section) {
   const { port, node: drawing } = section;
   const layer = svg('g', { class: 'section-tools' });
-  const beyond = svg('g', { class: 'section-beyond' });
   const spoken = element('p', { class: 'visually-hidden', 'aria-live': 'polite' });
   const listeners = new Set();
   let parts = null;
@@ -41,7 +38,7 @@ export function createTools(lab, section) {
   let asked = 0;
   let waiting = 0;
 
-  drawing.append(beyond, layer);
+  drawing.append(layer);
   drawing.parentElement.append(spoken);
   layer.addEventListener('pointerdown', down);
   layer.addEventListener('pointermove', move);
@@ -78,7 +75,6 @@ export function createTools(lab, section) {
     tools.reading = null;
     parts = null;
     layer.replaceChildren();
-    beyond.replaceChildren();
   }
 
   /* --- readings --- */
@@ -176,7 +172,6 @@ export function createTools(lab, section) {
   }
 
   function draw() {
-    drawBeyond();
     if (!parts || !section.plane || !port.width) return;
     if (!tools.tool.placed && section.drawn >= lab.newestGeneration) raise();
     ({ protractor: drawProtractor, ruler: drawRuler, screen: drawScreen })[tools.tool.kind]();
@@ -195,11 +190,11 @@ export function createTools(lab, section) {
     changed();
   }
 
-  function put2(node, [x, y]) {
+  function moveTo(node, [x, y]) {
     node.setAttribute('transform', `translate(${round(x)} ${round(y)})`);
   }
 
-  function write2([x, y], words) {
+  function label([x, y], words) {
     const { plate, text } = parts;
     const width = 12 + 7.6 * words.length;
     const [px, py] = [
@@ -218,8 +213,8 @@ export function createTools(lab, section) {
     const centre = at(points[0]);
     const [a, b] = arms.map((arm) => toward(centre, arm, ARM_PX));
     const tick = (angle) => {
-      const [from, to] = [angle % 10 ? (angle % 5 ? 6 : 10) : 14, 0].map((in_) =>
-        toward(centre, arms[0] + angle, DIAL_PX - in_),
+      const [from, to] = [angle % 10 ? (angle % 5 ? 6 : 10) : 14, 0].map((inwards) =>
+        toward(centre, arms[0] + angle, DIAL_PX - inwards),
       );
       return `M${from.map(round)}L${to.map(round)}`;
     };
@@ -243,10 +238,10 @@ export function createTools(lab, section) {
         );
       }),
     );
-    [centre, a, b].forEach((place, index) => put2(parts.handles[index], place));
+    [centre, a, b].forEach((point, index) => moveTo(parts.handles[index], point));
     const angle = `${digits(between(arms[0], arms[1]), 4)}°`;
     const half = arms[0] + (((((arms[1] - arms[0]) % 360) + 540) % 360) - 180) / 2;
-    write2(toward(centre, half, 58), angle);
+    label(toward(centre, half, 58), angle);
     parts.handles.forEach((each) => each.setAttribute('aria-description', angle));
   }
 
@@ -270,10 +265,10 @@ export function createTools(lab, section) {
       ),
     );
     parts.words.replaceChildren();
-    put2(parts.handles[0], a);
-    put2(parts.handles[1], b);
+    moveTo(parts.handles[0], a);
+    moveTo(parts.handles[1], b);
     const words = digits(length(minus(points[1], points[0])), 3);
-    write2([(a[0] + b[0]) / 2 + 52 * nx, (a[1] + b[1]) / 2 + 44 * ny], words);
+    label([(a[0] + b[0]) / 2 + 52 * nx, (a[1] + b[1]) / 2 + 44 * ny], words);
     [...parts.handles, parts.grab].forEach((each) => each.setAttribute('aria-description', words));
   }
 
@@ -284,8 +279,8 @@ export function createTools(lab, section) {
     const line = `M${a.map(round)}L${b.map(round)}`;
     parts.body.setAttribute('d', line);
     parts.grab.setAttribute('d', line);
-    put2(parts.handles[0], a);
-    put2(parts.handles[1], b);
+    moveTo(parts.handles[0], a);
+    moveTo(parts.handles[1], b);
     const spot = spotOf(points);
     const on = (s) => [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])].map(round);
     parts.spot.setAttribute('d', spot ? `M${on(spot[0])}L${on(spot[1])}` : '');
@@ -298,7 +293,7 @@ export function createTools(lab, section) {
         : spot
           ? say('{distance}, spot {wide}, {percent}', { distance: digits(value, 4), wide, percent })
           : say('{distance}, {percent}', { distance: digits(value, 4), percent });
-    write2([b[0], Math.max(a[1], b[1]) + 26], words);
+    label([b[0], Math.max(a[1], b[1]) + 26], words);
     [...parts.handles, parts.grab].forEach((each) => each.setAttribute('aria-description', words));
   }
 
@@ -319,25 +314,6 @@ export function createTools(lab, section) {
       return t >= 0 && t <= line.end && s >= 0 && s <= 1 ? [s] : [];
     });
     return crossings.length ? [Math.min(...crossings), Math.max(...crossings)] : null;
-  }
-
-  function drawBeyond() {
-    if (!section.marks?.extensions || !section.plane) {
-      beyond.replaceChildren();
-      return;
-    }
-    const [left, right, bottom, top] = port.extent();
-    const axes = { u: section.plane.right, v: section.plane.up };
-    const last = section.segments.filter(({ one }) => !one.node.hit && one.level > 0 && one.weight >= STRONG);
-    beyond.replaceChildren(
-      ...last.flatMap(({ line }) => {
-        const back = { from: line.from, along: line.along.map((x) => -x), end: Infinity };
-        const ends = flatLine(back, axes, { left, right, bottom, top });
-        return ends
-          ? [svg('path', { d: `M${ends.map(([u, v]) => `${round(port.x(u))} ${round(port.y(v))}`).join('L')}` })]
-          : [];
-      }),
-    );
   }
 
   /* --- the pointer and the keys --- */
@@ -377,10 +353,10 @@ export function createTools(lab, section) {
     drag = null;
     event.stopPropagation();
     changed();
-    say2();
+    speak();
   }
 
-  function say2() {
+  function speak() {
     write(spoken, { textContent: parts?.text.textContent ?? '' });
   }
 
@@ -426,7 +402,7 @@ export function createTools(lab, section) {
         shift(which, [arrow[0] * step, arrow[1] * step], false);
       }
       changed();
-      say2();
+      speak();
     } else return;
     event.preventDefault();
     event.stopPropagation();
