@@ -54,6 +54,14 @@ const settled = async (screen) => {
   await drawn(screen);
 };
 
+/** A change that a click makes, perhaps after requests. */
+async function changing(screen, act) {
+  const before = await screen.page.evaluate(() => window.lab.newestGeneration);
+  await act();
+  await screen.until((generation) => window.lab.newestGeneration > generation, before);
+  await settled(screen);
+}
+
 export const cases = {
   'the outlines are those of the command, and of a lens': async (t) => {
     for (const [scene, view] of [
@@ -325,5 +333,92 @@ export const cases = {
     const { screen } = await opened(t, SCENE, { width: 412, height: 915, dark: true, touch: true });
     await t.axe(screen, 'the section on a phone');
     await t.image(screen, 'section-phone');
+  },
+
+  'from the start page to light in a lens in two actions; each thing of the palette meets light': async (t) => {
+    const lab = await t.lab();
+    const screen = await t.open(lab);
+    await screen.page.getByRole('button', { name: /^Free experiment/ }).click();
+    await screen.button('Lens', true).click();
+    await screen.until(() => window.lab.section.hits.filter(({ hit }) => hit.solid === 'lens').length === 14);
+    t.check(await screen.page.locator('.section-formula').isVisible(), 'the lens formula');
+    await t.axe(screen, 'a free experiment');
+    await t.image(screen, 'free-experiment');
+    const objects = async () => (await lab.get('/api/scene')).objects.map(({ name }) => name);
+    const undo = async () => {
+      await changing(screen, () => screen.button('Undo').click());
+      t.equal(await objects(), ['table', 'lamp', 'board'], 'one undo');
+    };
+    await settled(screen);
+    await undo();
+
+    const f = screen.page.getByRole('group', { name: 'The next lens' }).getByLabel('f', { exact: true });
+    for (const [form, focus] of [
+      ['Biconvex', 8],
+      ['Meniscus', 25],
+      ['Plano-concave', -12],
+    ]) {
+      await screen.page.getByRole('combobox', { name: 'Form of the lens' }).selectOption(form);
+      await f.fill(String(focus));
+      await f.press('Enter');
+      await changing(screen, () => screen.button('Lens', true).click());
+      const { efl } = (await lab.get('/api/lens')).sections['first-order'].values;
+      t.near(efl, 10 * focus, Math.abs(0.001 * 10 * focus), `${form}: focal length in mm`);
+      await undo();
+    }
+    for (const item of await screen.page.locator('.palette-item').all()) {
+      const name = await item.innerText();
+      await changing(screen, () => item.click());
+      const { segments, hits } = await screen.page.evaluate(() => window.lab.section);
+      t.more(segments.length, 0, `${name}: rays`);
+      const added = (await objects()).filter(
+        (each) => !['table', 'lamp', 'board', 'ray', 'rays', 'source'].includes(each),
+      );
+      if (added.length)
+        t.check(
+          hits.some(({ hit }) => hit.solid === added[0]),
+          `${name}: light on ${added[0]}`,
+        );
+      await undo();
+    }
+  },
+
+  'a point source has a real or a virtual image where the lens formula puts it': async (t) => {
+    const lab = await t.lab(SCENE);
+    await lab.post('/api/open', { new: 'bench' });
+    const screen = await t.open(lab);
+    await screen.page.evaluate(() => window.lab.section.open('top', { at: 2.5, window: [-20, 20, -12, 12] }));
+    await drawn(screen);
+    await screen.showPanel('Objects');
+    for (const name of ['Point source', 'Lens']) await changing(screen, () => screen.button(name, true).click());
+    const imageFor = async (x) => {
+      const move = (to) => window.lab.set({ 'source.position': [to, 2.5, 0], 'source.target': [0, 2.5, 0] });
+      await changing(screen, () => screen.page.evaluate(move, x));
+      return screen.page.evaluate(() => window.lab.section.images);
+    };
+    const [real] = await imageFor(-15);
+    t.check(real.real && real.point, 'beyond the focus: a real image');
+    t.near(1 / real.formula.a + 1 / real.formula.b, 1 / real.formula.f, 0.001, '1/a + 1/b');
+    t.near(real.formula.f, 10, 0.01, 'f');
+    const [virtual] = await imageFor(-6);
+    t.check(!virtual.real, 'within the focal length: a virtual image');
+    t.near(1 / virtual.formula.a + 1 / virtual.formula.b, 1 / virtual.formula.f, 0.001, '1/a + 1/b, b below 0');
+    t.less(virtual.formula.b, 0, 'b');
+    t.more(await screen.page.locator('.section-extension').count(), 5, 'extensions');
+    t.match(await screen.page.locator('.section-images').textContent(), /virtual image/, 'its name');
+    await t.image(screen, 'virtual-image');
+  },
+
+  'without beams the plane is through the glass; the legend of a telephone covers no solid': async (t) => {
+    const { screen } = await opened(t, 'scenes/rod.yaml', { width: 390, height: 844, touch: true });
+    const { view, plane } = await screen.page.evaluate(() => window.lab.section);
+    t.equal([view, plane.origin], ['front', [0, 0, 0]], 'the plane');
+    const [legend, vessel, lamp] = await Promise.all(
+      ['rect.section-plate', '.section-solid[data-name="rod"]', '.section-light'].map((at) =>
+        screen.page.locator(at).first().boundingBox(),
+      ),
+    );
+    t.check(legend.y + legend.height <= vessel.y, 'the legend is above the rod');
+    t.check(lamp, 'the lamp is drawn');
   },
 };
