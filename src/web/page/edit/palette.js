@@ -79,7 +79,7 @@ function createLensForm(lab) {
     made.node.title = title;
     return made;
   };
-  const f = field('f', 'Focal length, below 0 for a lens that spreads light', (value) => {
+  const f = field('f', say('Focal length, below 0 for a lens that spreads light'), (value) => {
     if (value === 0) return show();
     focus = value;
     radii = null;
@@ -91,9 +91,16 @@ function createLensForm(lab) {
     radii[at] = value;
     show();
   };
-  const about = 'above 0 if its centre is on the side where the light goes, 0 if flat';
-  const radii1 = field('R₁', `Radius of the side where the light comes, ${about}`, entered(0));
-  const radii2 = field('R₂', `Radius of the side where the light goes, ${about}`, entered(1));
+  const radii1 = field(
+    'R₁',
+    say('Radius of the side where the light comes: above 0 if its centre is where the light goes, 0 if flat'),
+    entered(0),
+  );
+  const radii2 = field(
+    'R₂',
+    say('Radius of the side where the light goes: above 0 if its centre is there too, 0 if flat'),
+    entered(1),
+  );
   const unit = element('span', { class: 'hint' });
   const node = element(
     'div',
@@ -118,11 +125,14 @@ function createLensForm(lab) {
   function show() {
     kinds.set(kind);
     const made = form(usualSize(lab));
-    f.set(round(focalLength(made, N.bk7)));
+    const focal = focalLength(made, N.bk7);
+    f.set(Number.isFinite(focal) ? round(focal) : 0); /* 0: without power */
     radii1.set(round(made.radius_1));
     radii2.set(round(made.radius_2));
     const name = unitName(lab);
-    unit.textContent = name ? say('in {unit}, of glass with n = 1.5172', { unit: name }) : 'in scene units, n = 1.5172';
+    unit.textContent = name
+      ? say('in {unit}, of glass with n = 1.5172', { unit: name })
+      : say('in scene units, of glass with n = 1.5172');
   }
 }
 
