@@ -167,9 +167,10 @@ function mark({ tab, frame }, on) {
   frame.hidden = !on;
 }
 
-/* Shows as much of the tabs as fits in one row: icons and words, words, or icons and the word of the chosen tab. */
+/* Shows as much of the tabs as fits in one row: icons and words, words, words close together, or icons and the word of
+ * the chosen tab. */
 function fit(list) {
-  for (const how of ['full', 'words', 'icons']) {
+  for (const how of ['full', 'words', 'close', 'icons']) {
     list.dataset.fit = how;
     if (list.scrollWidth <= list.clientWidth) return;
   }
