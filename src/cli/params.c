@@ -76,7 +76,7 @@ static status print(const params_request *request, const scene *s, diagnostic *w
     if (!request->json)
         return param_rows_print(stdout, s, request->filter, terminal_columns(STDOUT_FILENO), why);
     json_t *table = NULL;
-    TRY(param_rows_json(s, NULL, request->filter, &table, why));
+    TRY(param_rows_json(s, NULL, NULL, request->filter, &table, why));
     return json_print(table, why);
 }
 

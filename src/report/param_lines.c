@@ -29,10 +29,10 @@ static status add_line(void *context, const char *path, const param *row, const 
     return added->path && added->value ? STATUS_OK : STATUS_FAILURE;
 }
 
-static status add_lines(param_lines *all, const scene *s)
+static status add_lines(param_lines *all, const scene *s, const param_selection *of)
 {
     if (s)
-        return scene_each_param(s, add_line, all);
+        return scene_each_param_of(s, of, add_line, all);
     status result = STATUS_OK;
     for (size_t i = 0; i < param_count() && result == STATUS_OK; i++) {
         char path[PARAM_PATH_MAX];
@@ -111,10 +111,11 @@ static status narrow(param_lines *all, const char *filter, bool of_scene, diagno
     return STATUS_OK;
 }
 
-status param_lines_collect(const scene *s, const char *filter, param_lines *out, diagnostic *why)
+status param_lines_collect(const scene *s, const param_selection *of, const char *filter, param_lines *out,
+                           diagnostic *why)
 {
     *out = (param_lines){0};
-    if (add_lines(out, s) != STATUS_OK)
+    if (add_lines(out, s, of) != STATUS_OK)
         return out_of_memory(why);
     return filter ? narrow(out, filter, s != NULL, why) : STATUS_OK;
 }

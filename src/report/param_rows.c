@@ -85,7 +85,7 @@ static bool print_lines(FILE *stream, const param_lines *all, const char *value_
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why)
 {
     param_lines all;
-    status result = param_lines_collect(s, filter, &all, why);
+    status result = param_lines_collect(s, NULL, filter, &all, why);
     if (result == STATUS_OK && !print_lines(stream, &all, s ? "value" : "default", columns))
         result = out_of_memory(why);
     param_lines_release(&all);
@@ -195,18 +195,19 @@ static status add_text(void *values, const char *path, const param *row, const c
 }
 
 /* {path: text} of a scene. */
-static json_t *texts_of(const scene *s)
+static json_t *texts_of(const scene *s, const param_selection *of)
 {
     json_t *values = json_object();
-    return json_if(values, values && scene_each_param(s, add_text, values) == STATUS_OK);
+    return json_if(values, values && scene_each_param_of(s, of, add_text, values) == STATUS_OK);
 }
 
-status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why)
+status param_rows_json(const scene *s, const scene *opened, const param_selection *of, const char *filter, json_t **out,
+                       diagnostic *why)
 {
     param_lines all;
     *out = NULL;
-    status result = param_lines_collect(s, filter, &all, why);
-    json_t *list = result == STATUS_OK ? json_array() : NULL, *initial = opened && list ? texts_of(opened) : NULL;
+    status result = param_lines_collect(s, of, filter, &all, why);
+    json_t *list = result == STATUS_OK ? json_array() : NULL, *initial = opened && list ? texts_of(opened, of) : NULL;
     int bad = !list || (opened && !initial);
     const param *ior = param_find(PARAM_MATERIAL, "ior");
     for (size_t i = 0; i < all.count && !bad; i++) {

@@ -27,8 +27,9 @@ typedef struct param_lines {
     size_t count;
 } param_lines;
 
-/* filter: as for param_rows_print; s and filter may be NULL. */
-status param_lines_collect(const scene *s, const char *filter, param_lines *out, diagnostic *why);
+/* filter: as for param_rows_print; of: only these parameters of the scene; s, of and filter may be NULL. */
+status param_lines_collect(const scene *s, const param_selection *of, const char *filter, param_lines *out,
+                           diagnostic *why);
 void param_lines_release(param_lines *all);
 
 /* The path of a row, such as "render.depth"; "LIGHT.intensity" for objects, whose names the scene defines. Returns
@@ -41,8 +42,10 @@ char *param_lines_path(const param *row, char *text, size_t size);
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why);
 
 /* The table as JSON; the caller owns *out. opened: NULL, or, for the page, an earlier state of the scene, whose values
- * become `initial` (null: no such parameter). Rows of `ior` then have `first_coefficients`, {LAW: initial numbers}. */
-status param_rows_json(const scene *s, const scene *opened, const char *filter, json_t **out, diagnostic *why);
+ * become `initial` (null: no such parameter). Rows of `ior` then have `first_coefficients`, {LAW: initial numbers}.
+ * of: NULL, or only these. */
+status param_rows_json(const scene *s, const scene *opened, const param_selection *of, const char *filter, json_t **out,
+                       diagnostic *why);
 
 /* Prints the generated part of cuvette-scene(5). */
 void param_rows_manual(FILE *stream);

@@ -443,12 +443,20 @@ static bool is_in_use(const scene *s, const param_place *at)
 typedef struct place_tour {
     const scene *s;
     const param_defaults *but; /* places with these values are skipped; NULL: none */
+    const param_selection *of; /* only these; NULL: all */
     param_place_visit *visit;
     void *context;
 } place_tour;
 
+static bool is_wanted(const place_tour *tour, const param_place *at)
+{
+    return !tour->of || tour->of->wants(tour->of->context, tour->s, at);
+}
+
 static bool is_skipped(const place_tour *tour, const param_place *at)
 {
+    if (!is_wanted(tour, at))
+        return true;
     return tour->but &&
            param_defaults_hold(tour->but, at->row, (const char *)place_base(tour->s, at) + at->row->offset);
 }
@@ -472,6 +480,8 @@ static status visit_group(const place_tour *tour, param_group group)
     status code = STATUS_OK;
     param_place at = {.row = NULL, .object_group = group, .index = 0, .element = -1};
     for (; at.index < param_place_group_size(tour->s, group) && code == STATUS_OK; at.index++) {
+        if (!is_wanted(tour, &at))
+            continue;
         code = visit_rows(tour, at, group);
         if (code == STATUS_OK && group == PARAM_SOLID)
             code = visit_rows(tour, at, PARAM_MATERIAL);
@@ -501,14 +511,25 @@ static status visit_path(void *context, const param_place *at)
     return code;
 }
 
-status scene_each_param_but(const scene *s, const param_defaults *but, param_visit *visit, void *context)
+static status visit_paths(place_tour tour, param_visit *visit, void *context)
 {
-    path_visitor v = {s, visit, context};
-    const place_tour tour = {s, but, visit_path, &v};
+    path_visitor v = {tour.s, visit, context};
     status code = STATUS_OK;
+    tour.visit = visit_path;
+    tour.context = &v;
     for (int g = 0; g < PARAM_GROUP_COUNT && code == STATUS_OK; g++)
         code = visit_group(&tour, (param_group)g);
     return code;
+}
+
+status scene_each_param_but(const scene *s, const param_defaults *but, param_visit *visit, void *context)
+{
+    return visit_paths((place_tour){.s = s, .but = but}, visit, context);
+}
+
+status scene_each_param_of(const scene *s, const param_selection *of, param_visit *visit, void *context)
+{
+    return visit_paths((place_tour){.s = s, .of = of}, visit, context);
 }
 
 status scene_each_param(const scene *s, param_visit *visit, void *context)

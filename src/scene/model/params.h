@@ -140,6 +140,15 @@ typedef struct param_place {
 typedef status param_place_visit(void *context, const param_place *at);
 status param_place_each(const scene *s, param_group group, param_place_visit *visit, void *context);
 
+/* Some parameters of a scene, such as those of the objects that a page shows. Asked with row NULL: whether any
+ * parameter of that object is wanted, so that a scene of many objects is not formatted for a few. */
+typedef struct param_selection {
+    bool (*wants)(const void *context, const scene *s, const param_place *at);
+    const void *context;
+} param_selection;
+/* As scene_each_param, only those of the selection; of: NULL for all. */
+status scene_each_param_of(const scene *s, const param_selection *of, param_visit *visit, void *context);
+
 /* The value of a place as text, in the form of scene_get. Newly allocated; NULL if memory runs out. */
 char *param_place_text(const scene *s, const param_place *at);
 /* Whether two objects, whose structs are `one` and `other`, have values of a row with the same text. */

@@ -9,6 +9,7 @@
 #include "web/api/api.h"
 
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,12 +70,67 @@ static json_t *outline_json(const solid_shape *shape)
     return parts;
 }
 
+/* --- what the page asks for: of a group of many objects only the parameters of those that it shows --- */
+
+enum { GROUP_ALL = 40 }; /* the largest group whose objects are sent with all their parameters */
+
+typedef struct asked {
+    const scene *now;
+    json_t *objects, *some, *paths; /* {NAME: true}: all parameters, some; {PATH: true} */
+} asked;
+
+/* ?of=NAME,PATH,..: a word with a dot is a path. */
+static bool read_asked(asked *a, const char *words)
+{
+    *a = (asked){NULL, json_object(), json_object(), json_object()};
+    bool good = a->objects && a->some && a->paths;
+    while (words && *words && good) {
+        const char *dot = NULL;
+        size_t length = 0;
+        for (; words[length] && words[length] != ','; length++)
+            dot = words[length] == '.' ? words + length : dot;
+        const size_t name = dot ? (size_t)(dot - words) : length;
+        good = json_object_setn_new(dot ? a->some : a->objects, words, name, json_true()) == 0;
+        if (dot && good)
+            good = json_object_setn_new(a->paths, words, length, json_true()) == 0;
+        words += length + (words[length] == ',');
+    }
+    return good;
+}
+
+static void release_asked(asked *a)
+{
+    json_decref(a->objects);
+    json_decref(a->some);
+    json_decref(a->paths);
+}
+
+static bool is_asked(const void *context, const scene *s, const param_place *at)
+{
+    const asked *a = context;
+    if (param_place_group_size(a->now, at->object_group) <= GROUP_ALL)
+        return true;
+    const char *name = param_place_group_name(s, at->object_group, at->index);
+    if (json_object_get(a->objects, name))
+        return true;
+    if (!at->row || !json_object_get(a->some, name))
+        return !at->row && json_object_get(a->some, name);
+    char path[PARAM_PATH_MAX];
+    snprintf(path, sizeof path, "%s.%s", name, at->row->name);
+    return json_object_get(a->paths, path) != NULL;
+}
+
+static bool is_sent_whole(const asked *a, const char *name)
+{
+    return a->now->solid_count <= GROUP_ALL || json_object_get(a->objects, name);
+}
+
 /* {name of a solid: outline}, for visible solids whose shape has one. */
-static json_t *outlines_json(const scene *s)
+static json_t *outlines_json(const scene *s, const asked *a)
 {
     json_t *all = json_object();
     for (size_t i = 0; i < s->solid_count; i++)
-        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->rings)
+        if (s->solids[i].visible && shape_of(&s->solids[i].shape)->rings && is_sent_whole(a, s->solids[i].name))
             json_add_as(&all, s->solids[i].name, outline_json(&s->solids[i].shape));
     return all;
 }
@@ -89,13 +145,25 @@ static json_t *shapes_json(void)
     return list;
 }
 
-/* The objects and one row per parameter. opened: the scene that `initial` is read from. NULL when out of memory. */
-static json_t *scene_json(const scene *s, const scene *opened, uint64_t generation)
+static bool has_all(const scene *s)
+{
+    bool all = true;
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
+        all = all && param_place_group_size(s, (param_group)g) <= GROUP_ALL;
+    return all;
+}
+
+/* The objects and one row per parameter that is asked for. opened: the scene that `initial` is read from. NULL when out
+ * of memory. */
+static json_t *scene_json(const scene *s, const scene *opened, uint64_t generation, uint64_t version, const asked *a,
+                          const char *words)
 {
     json_t *rows = NULL, *o = NULL;
-    if (param_rows_json(s, opened, NULL, &rows, NULL) == STATUS_OK)
-        o = json_pack("{s:I,s:o,s:o,s:o,s:o,s:O}", "generation", (json_int_t)generation, "title",
-                      json_of_text(s->title), "objects", objects_json(s), "outlines", outlines_json(s), "shapes",
+    const param_selection of = {is_asked, a};
+    if (param_rows_json(s, opened, &of, NULL, &rows, NULL) == STATUS_OK)
+        o = json_pack("{s:I,s:I,s:b,s:o,s:o,s:o,s:o,s:o,s:O}", "generation", (json_int_t)generation, "version",
+                      (json_int_t)version, "whole", has_all(s), "of", json_of_text(words ? words : ""), "title",
+                      json_of_text(s->title), "objects", objects_json(s), "outlines", outlines_json(s, a), "shapes",
                       shapes_json(), "params", json_object_get(rows, "params"));
     json_decref(rows);
     return o;
@@ -151,12 +219,17 @@ static json_t *rows_by_path(const json_t *params)
     return json_if(rows, !bad);
 }
 
-/* Adds the rows that differ, and all paths in their order if the paths or their order changed. */
-static bool add_params(json_t *delta, const json_t *before, const json_t *after)
+static bool asks_alike(const json_t *a, const json_t *b)
+{
+    return json_equal(json_object_get(a, "of"), json_object_get(b, "of"));
+}
+
+/* Adds the rows that differ, or all, and all paths in their order if the paths or their order changed. */
+static bool add_params(json_t *delta, const json_t *before, const json_t *after, bool all)
 {
     const json_t *old = json_object_get(before, "params"), *new = json_object_get(after, "params");
-    json_t *known = rows_by_path(old), *rows = json_array(), *order = json_array();
-    bool same = json_array_size(old) == json_array_size(new);
+    json_t *known = all ? json_object() : rows_by_path(old), *rows = json_array(), *order = json_array();
+    bool same = !all && json_array_size(old) == json_array_size(new);
     int bad = !known;
     for (size_t i = 0; i < json_array_size(new) && !bad; i++) {
         json_t *row = json_array_get(new, i);
@@ -176,7 +249,7 @@ static bool add_params(json_t *delta, const json_t *before, const json_t *after)
 
 /* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if they or their order
  * changed], and every other key whose value differs}. */
-static json_t *scene_delta(const json_t *before, const json_t *after)
+static json_t *scene_delta(const json_t *before, const json_t *after, bool all_rows)
 {
     json_t *delta = json_pack("{s:I}", "since", generation_of(before));
     bool good = delta != NULL;
@@ -188,22 +261,26 @@ static json_t *scene_delta(const json_t *before, const json_t *after)
             good = good && json_object_set(delta, key, value) == 0;
     }
     good = good && json_object_set(delta, "generation", json_object_get(after, "generation")) == 0;
-    return json_if(delta, good && add_params(delta, before, after));
+    return json_if(delta, good && add_params(delta, before, after, all_rows || !asks_alike(before, after)));
 }
 
 /* The reply as allocated text: the scene, or only its differences from the generation `since` if that is remembered;
- * -1 for none. Releases json. Jansson's reference counts are atomic only in some builds, so all uses of the remembered
+ * -1 for none; all_rows: all its rows. Releases json. Jansson's reference counts are atomic only in some builds, so all uses of the remembered
  * scenes are under the lock. */
-static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since)
+static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since, bool all_rows)
 {
-    const json_t *before = NULL;
+    json_t *before = NULL;
     bool known = false;
     pthread_mutex_lock(&s->lock);
     for (int i = 0; i < SCENES; i++) {
-        before = s->scene[i] && generation_of(s->scene[i]) == since ? s->scene[i] : before;
-        known |= s->scene[i] && generation_of(s->scene[i]) == generation_of(json);
+        if (s->scene[i] && generation_of(s->scene[i]) == since && (!before || asks_alike(s->scene[i], json)))
+            before = s->scene[i];
+        known |= s->scene[i] && generation_of(s->scene[i]) == generation_of(json) && asks_alike(s->scene[i], json);
     }
-    json_t *reply = before ? scene_delta(before, json) : json_incref(json);
+    json_t *objects = json_object_get(before, "objects");
+    if (json_equal(objects, json_object_get(json, "objects"))) /* remember the list of a large scene once */
+        json_object_set(json, "objects", objects);
+    json_t *reply = before ? scene_delta(before, json, all_rows) : json_incref(json);
     char *text = reply ? json_text(reply, JSON_COMPACT) : NULL;
     json_decref(reply);
     if (!known && json_array_size(json_object_get(json, "params")) <= PARAMS_MAX) {
@@ -229,29 +306,38 @@ static bool read_since(call *c, long long *since)
 
 status api_scene(call *c)
 {
-    uint64_t generation;
+    uint64_t generation, version;
     long long since;
+    asked of;
     if (!read_since(c, &since))
         return api_refuse(c, 400, "since is not a generation", "use ?since=N with the generation of an earlier reply");
-    scene *current = scene_document_copy(c->l->scene_document, &generation),
-          *opened = scene_document_copy_opened(c->l->scene_document);
-    json_t *all = current && opened ? scene_json(current, opened, generation) : NULL;
-    char *text = all ? sent_scenes_reply(c->l->sent, all, since) : NULL;
+    const char *words = http_query_value(c->request, "of");
+    const bool read = read_asked(&of, words), all_rows = http_query_value(c->request, "rows") != NULL;
+    scene *current, *opened;
+    json_t *all = NULL;
+    if (scene_document_copies(c->l->scene_document, &current, &opened, &generation, &version) && read) {
+        of.now = current;
+        all = scene_json(current, opened, generation, version, &of, words);
+    }
+    char *text = all ? sent_scenes_reply(c->l->sent, all, since, all_rows) : NULL;
+    release_asked(&of);
     scene_destroy(current);
     scene_destroy(opened);
     return text ? api_send(c, "application/json", text, strlen(text)) : out_of_memory(&c->why);
 }
 
 typedef struct param_question {
+    const scene *s;
     const char *words;
     json_t *found[PARAM_NO_MATCH]; /* indexed by param_match */
 } param_question;
 
-static status add_found(void *context, const char *path, const param *row, const char *value)
+static status add_found(void *context, const param_place *at)
 {
     param_question *q = context;
-    const param_match match = param_matches(row, path, q->words);
-    (void)value;
+    char path[PARAM_PATH_MAX];
+    snprintf(path, sizeof path, "%s.%s", param_place_group_name(q->s, at->object_group, at->index), at->row->name);
+    const param_match match = param_matches(at->row, path, q->words);
     if (match != PARAM_NO_MATCH)
         json_add(&q->found[match], json_of_text(path));
     return STATUS_OK;
@@ -263,13 +349,12 @@ status api_find(call *c)
     if (!q.words)
         return api_refuse(c, 400, "find is missing", "use ?find=WORDS");
     scene *current = scene_document_copy(c->l->scene_document, NULL);
-    json_t *found = json_array();
+    json_t *found = current ? json_array() : NULL;
+    q.s = current;
     for (int i = 0; i < PARAM_NO_MATCH; i++)
         q.found[i] = json_array();
-    if (!current || scene_each_param(current, add_found, &q) != STATUS_OK) {
-        json_decref(found);
-        found = NULL;
-    }
+    for (int g = 0; current && g < PARAM_GROUP_COUNT; g++)
+        param_place_each(current, (param_group)g, add_found, &q);
     for (int i = 0; i < PARAM_NO_MATCH; i++)
         json_add(&found, q.found[i]);
     scene_destroy(current);

@@ -348,12 +348,15 @@ scene *scene_document_copy_to_save(scene_document *d, uint64_t *generation, uint
     return copy;
 }
 
-scene *scene_document_copy_opened(scene_document *d)
+bool scene_document_copies(scene_document *d, scene **now, scene **opened, uint64_t *generation, uint64_t *number)
 {
     pthread_mutex_lock(&d->lock);
-    scene *copy = scene_clone(d->now.from->s);
+    *now = scene_clone(d->now.s);
+    *opened = scene_clone(d->now.from->s);
+    *generation = d->generation;
+    *number = d->now.number;
     pthread_mutex_unlock(&d->lock);
-    return copy;
+    return *now && *opened;
 }
 
 uint64_t scene_document_generation(scene_document *d)

@@ -75,8 +75,9 @@ scene *scene_document_copy(scene_document *d, uint64_t *generation);
 /* Like scene_document_copy, with the scene's own camera instead of the view, as for a file. number: the number of the
  * version, which moves of the camera do not change. */
 scene *scene_document_copy_to_save(scene_document *d, uint64_t *generation, uint64_t *number);
-/* A copy of the scene as it was opened. */
-scene *scene_document_copy_opened(scene_document *d);
+/* Copies of the scene and of the scene as it was opened, with the generation and the number of the version, which moves
+ * of the camera do not change; false when out of memory. */
+bool scene_document_copies(scene_document *d, scene **now, scene **opened, uint64_t *generation, uint64_t *number);
 uint64_t scene_document_generation(scene_document *d);
 
 /* Lets later copies share the data that was loaded for a copy of this generation; does nothing if the document has a

@@ -163,8 +163,7 @@ export function createBenchFan(lab, bench, changed) {
   }
 
   function dependence() {
-    const rows = lab.scene.params.filter(({ path }) => !path.startsWith('camera.'));
-    return JSON.stringify([question(true), lab.scene.objects, rows.map(({ path, value }) => [path, value])]);
+    return `${lab.scene.version} ${question(true)}`;
   }
 
   function remove() {

@@ -38,14 +38,8 @@ radius,thickness,medium,conic,stop
 const state = { report: null, error: null, made: '', asked: '', system: '', fields: '', waves: '', nm: 0, auto: true };
 let lens = null; /* {check(), stop()} of the panel, once it exists */
 
-/* What a report depends on: all parameters but the camera's. */
-const statusOf = (lab) =>
-  JSON.stringify([
-    state.system,
-    state.fields,
-    state.waves,
-    (lab.scene?.params ?? []).filter(({ group }) => group !== 'camera').map(({ path, value }) => [path, value]),
-  ]);
+/* What a report depends on: the question, and the scene, but for moves of the camera. */
+const statusOf = (lab) => JSON.stringify([state.system, state.fields, state.waves, lab.scene?.version]);
 
 /* The systems of the scene: the names of its lenses without their numbers. */
 const systemsOf = (lab) =>

@@ -235,6 +235,12 @@ function createAnswer(lab) {
   );
   let shown = null;
 
+  function plot(tree) {
+    const solids = tree ? solidPoints(lab) : [];
+    side.show(tree, sidePlane(lab.state?.camera), solids);
+    top.show(tree, topPlane(), solids);
+  }
+
   return {
     node,
     show(tree) {
@@ -242,9 +248,8 @@ function createAnswer(lab) {
       if (tree === shown) return;
       shown = tree;
       table.show(tree);
-      const solids = tree ? solidPoints(lab) : [];
-      side.show(tree, sidePlane(lab.state?.camera), solids);
-      top.show(tree, topPlane(), solids);
+      plot(tree);
+      lab.want('pixel', solidsOf(tree)).then(() => tree === shown && lab.scene?.whole === false && plot(tree));
       if (!tree) return;
       const note = integratorNote(lab);
       replace(head, summary(tree), note ? notice(note) : cutOff(lab, tree));
@@ -255,6 +260,9 @@ function createAnswer(lab) {
     },
   };
 }
+
+/* The solids that the rays meet. */
+const solidsOf = (tree) => [...new Set((tree?.rays || []).map((ray) => ray.node.hit?.solid).filter(Boolean))];
 
 function staleNotice() {
   if (question.old) return notice('The scene and the camera have changed since these rays were traced.');

@@ -53,11 +53,8 @@ export function createQuestion(lab) {
   }
 
   function dependence() {
-    const camera = [];
-    const rest = [];
-    for (const { path, value } of lab.scene?.params || [])
-      (path.startsWith('camera.') ? camera : rest).push(path, value);
-    return { camera: JSON.stringify(camera), rest: JSON.stringify(rest) };
+    const camera = (lab.scene?.params || []).filter(({ group }) => group === 'camera').map(({ value }) => value);
+    return { camera: JSON.stringify(camera), rest: lab.scene?.version };
   }
 
   function notify() {

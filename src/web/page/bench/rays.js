@@ -11,12 +11,12 @@ import { buildTree } from './ray_tree.js';
 export function createBenchRays(lab) {
   const listeners = new Set();
   const rays = { segments: [], error: null, on: (listener) => listeners.add(listener) };
-  let traced = '';
+  let traced = null; /* the version of the scene */
   let asking = false;
 
   lab.on('scene', follow);
   lab.on('restarted', () => {
-    traced = '';
+    traced = null;
   });
   lab.view.behind(() => asking);
   if (lab.scene) follow();
@@ -25,10 +25,9 @@ export function createBenchRays(lab) {
   /* Sends one request at a time; a change during a request causes another one. */
   async function follow() {
     if (asking || !lab.scene) return;
-    const now = dependence();
-    if (now === traced) return;
+    if (lab.scene.version === traced) return;
     asking = true;
-    traced = now;
+    traced = lab.scene.version;
     try {
       const some = lab.scene.objects.some((object) => object.kind === 'beam');
       rays.segments = some ? (await lab.get('/api/beams')).beams.flatMap(segmentsOf) : [];
@@ -39,11 +38,6 @@ export function createBenchRays(lab) {
     asking = false;
     for (const listener of listeners) listener();
     follow();
-  }
-
-  function dependence() {
-    const rows = lab.scene.params.filter(({ path }) => !path.startsWith('camera.'));
-    return JSON.stringify([lab.scene.objects, rows.map(({ path, value }) => [path, value])]);
   }
 }
 

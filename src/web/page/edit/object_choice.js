@@ -66,6 +66,7 @@ export function createChoice(lab) {
     since = generation;
     if (name === choice.name) return;
     choice.name = name;
+    lab.want('choice', name ? [name] : []);
     for (const listener of listeners) listener();
   }
 
@@ -122,6 +123,7 @@ export function createChoice(lab) {
 }
 
 const LATER_MS = 400;
+const MARKED_MAX = 40; /* of the objects that move along, those whose outlines are drawn in a large scene */
 
 function createGroup(lab, choice) {
   const listeners = new Set();
@@ -178,7 +180,9 @@ function createGroup(lab, choice) {
     if (key === requested || !['solid', 'light'].includes(object?.kind)) return;
     requested = key;
     await lab.get(`/api/objects/${encodeURIComponent(name)}/contents`).then(
-      ({ contents, ball }) => {
+      async ({ contents, ball }) => {
+        if (choice.name !== name) return;
+        await lab.want('choice', [name, ...contents.slice(0, MARKED_MAX)]);
         if (choice.name !== name) return;
         const place = lab.param(`${name}.position`)?.value;
         group.names = contents;

@@ -1,7 +1,10 @@
-/* The list of all objects of the scene, by kind. exports: createList(lab, choice) -> {node}; hintOf(object): a solid's
- * shape and material, a light's kind */
+/* The list of all objects of the scene, by kind, with a field to find them by name when there are many. exports:
+ * createList(lab, choice) -> {node}; hintOf(object): a solid's shape and material, a light's kind */
 
+import { createLongList } from '../shared/long_list.js';
 import { element, empty, replace } from '../shared/ui.js';
+
+const MANY = 40;
 
 const KINDS = [
   ['solid', 'Solids'],
@@ -20,32 +23,49 @@ export function hintOf(object) {
 }
 
 export function createList(lab, choice) {
-  const node = element('div', { class: 'object-list', tabindex: '-1' });
-  const items = new Map();
-  let shown = '';
+  const list = element('div', { class: 'object-list', tabindex: '-1' });
+  const search = element('input', {
+    type: 'search',
+    class: 'input object-search',
+    placeholder: 'Find an object',
+    'aria-label': 'Find an object by name',
+    spellcheck: 'false',
+    hidden: true,
+  });
+  const node = element('div', {}, search, list);
+  const items = new Map(); /* of the short lists */
+  let long = [];
+  let shown = null; /* the objects, and the words, of which the list was built */
+  let words = '';
 
+  search.addEventListener('input', () => build(lab.scene));
   choice.on(() => mark(true));
   lab.on('scene', build);
   if (lab.scene) build(lab.scene);
-  else replace(node, empty('Waiting for the scene …'));
+  else replace(list, empty('Waiting for the scene …'));
   return { node };
 
   function build(scene) {
-    const now = JSON.stringify(scene.objects);
-    if (now === shown) return;
-    shown = now;
+    const now = search.value.trim().toLowerCase();
+    if (scene.objects === shown && now === words) return;
+    [shown, words] = [scene.objects, now];
     const focused = [...items].find(([, button]) => button === document.activeElement)?.[0];
+    const found = words ? scene.objects.filter(({ name }) => name.toLowerCase().includes(words)) : scene.objects;
     items.clear();
+    search.hidden = scene.objects.length <= MANY;
+    long = [];
     replace(
-      node,
+      list,
       element('h2', { class: 'visually-hidden', text: 'Objects of the scene' }),
+      found.length ? null : empty('No object has this name.'),
       KINDS.map(([kind, title]) =>
         part(
           title,
-          scene.objects.filter((object) => object.kind === kind),
+          found.filter((object) => object.kind === kind),
         ),
       ),
     );
+    for (const each of long) each.list.set(each.objects);
     mark(false);
     if (focused) items.get(focused)?.focus({ preventScroll: true });
   }
@@ -56,33 +76,50 @@ export function createList(lab, choice) {
       'section',
       { 'aria-label': title },
       element('h3', {}, title, ' ', element('span', { class: 'badge', text: String(objects.length) })),
-      element(
-        'ul',
-        {},
-        objects.map((object) => element('li', {}, item(object))),
-      ),
+      objects.length > MANY ? longList(title, objects) : shortList(objects),
     );
   }
 
+  function shortList(objects) {
+    return element(
+      'ul',
+      {},
+      objects.map((object) => {
+        const button = item(object);
+        items.set(object.name, button);
+        return element('li', {}, button);
+      }),
+    );
+  }
+
+  function longList(title, objects) {
+    const made = createLongList({ label: title, item, scroller: list });
+    long.push({ list: made, objects });
+    return made.node;
+  }
+
   function item(object) {
-    const button = element(
+    return element(
       'button',
       {
         type: 'button',
         class: 'object-item',
-        'aria-pressed': 'false',
+        'aria-pressed': String(object.name === choice.name),
         onclick: () => choice.choose(choice.name === object.name ? '' : object.name),
       },
       element('span', { class: 'object-name', text: object.name }),
       ' ',
       element('span', { class: 'object-hint', text: hintOf(object) }),
     );
-    items.set(object.name, button);
-    return button;
   }
 
   function mark(scroll) {
-    for (const [name, button] of items) button.setAttribute('aria-pressed', String(name === choice.name));
+    const press = (name, button) => button.setAttribute('aria-pressed', String(name === choice.name));
+    for (const [name, button] of items) press(name, button);
     if (scroll) items.get(choice.name)?.scrollIntoView({ block: 'nearest' });
+    for (const each of long) {
+      if (scroll && choice.name) each.list.reveal(choice.name);
+      each.list.each(press);
+    }
   }
 }

@@ -2,7 +2,9 @@
  * parameters by object, and a search.
  * exports: panel */
 
+import { createLongList } from '../shared/long_list.js';
 import { button, checkbox, element, empty, group, icon, memory, replace } from '../shared/ui.js';
+import { hintOf } from './object_list.js';
 import { findParams } from './param_picker.js';
 import { createRow, hasLaw, valueText } from './param_row.js';
 
@@ -39,21 +41,41 @@ function ordered(names, lab) {
   return [...names].sort((a, b) => place(a) - place(b));
 }
 
+/* The objects of a kind whose parameters are not all here, because there are too many: a long list, from which a person
+ * picks those to show. */
+const BIG = [
+  ['solid', 'Solids'],
+  ['light', 'Lights'],
+  ['beam', 'Beams'],
+  ['material', 'Materials'],
+  ['mesh', 'Meshes'],
+];
+
+const bigKinds = (lab, here) =>
+  lab.scene.whole === false
+    ? BIG.map(([kind, title]) => [title, lab.scene.objects.filter((object) => object.kind === kind)]).filter(
+        ([, objects]) => objects.some(({ name }) => !here.has(name)),
+      )
+    : [];
+
 /* A solid that was transparent once keeps the parameters of clear solids, so that its transparency slider does not
  * vanish while it is dragged. */
 function mainParts(lab, onceClear) {
+  const here = grouped(lab.scene.params);
   const rowsOf = (name, fields) =>
     fields
       .map((word) => lab.param(`${name}.${word}`))
       .filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
-  const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
+  const solids = lab.scene.objects
+    .filter(({ kind, name }) => kind === 'solid' && here.has(name))
+    .map((object) => object.name);
   for (const name of solids) if ((lab.param(`${name}.transparency`)?.value ?? 0) > 0) onceClear.add(name);
   const isClear = (name) => onceClear.has(name);
   const parts = [
     ...solids.filter(isClear).map((name) => [name, rowsOf(name, MAIN.clear)]),
     ...solids.filter((name) => !isClear(name)).map((name) => [name, rowsOf(name, MAIN.opaque)]),
     ...lab.scene.objects
-      .filter((object) => object.kind === 'light')
+      .filter(({ kind, name }) => kind === 'light' && here.has(name))
       .map((object) => [object.name, rowsOf(object.name, MAIN.light)]),
     ['render', rowsOf('render', MAIN.render)],
   ];
@@ -83,7 +105,9 @@ export const panel = {
     });
     const rows = new Map();
     const onceClear = new Set();
+    const picked = new Set();
     let built = '';
+    let builtOf = null;
     let later = 0;
     let timer = 0;
     let searches = 0;
@@ -143,20 +167,21 @@ export const panel = {
 
     function show(scene) {
       const shape = JSON.stringify([
-        scene.objects,
         scene.params.map((row) => [row.path, row.type, row.choices?.length]),
         mainParts(lab, onceClear).map(([name, own]) => [name, own.length]),
       ]);
-      if (shape !== built && [...rows.values()].flat().some((made) => made.busy())) {
+      const same = shape === built && scene.objects === builtOf;
+      if (!same && [...rows.values()].flat().some((made) => made.busy())) {
         clearTimeout(later);
         later = setTimeout(() => show(lab.scene), LATER_MS);
-      } else if (shape !== built) {
-        built = shape;
+      } else if (!same) {
+        [built, builtOf] = [shape, scene.objects];
         build();
       } else {
         for (const part of rows.values()) for (const made of part) update(made, scene);
       }
-      for (const node of list.querySelectorAll('.param-group')) mark(node);
+      const groups = grouped(scene.params);
+      for (const node of list.querySelectorAll('.param-group')) mark(node, groups);
     }
 
     function update(made, scene) {
@@ -170,7 +195,13 @@ export const panel = {
       const nth = focusedRow ? [...focusedRow.querySelectorAll('input, select')].indexOf(document.activeElement) : -1;
       const place = list.scrollTop;
       rows.clear();
-      replace(list, mainGroup(), ordered(grouped(lab.scene.params).keys(), lab).map(objectGroup));
+      const here = grouped(lab.scene.params);
+      replace(
+        list,
+        mainGroup(),
+        bigKinds(lab, here).map(bigGroup),
+        ordered(here.keys(), lab).map((name) => objectGroup(name, here)),
+      );
       list.scrollTop = place;
       if (focused && root.contains(document.activeElement) === false) {
         list
@@ -217,8 +248,34 @@ export const panel = {
         .join(' ');
     }
 
+    function bigGroup([title, objects]) {
+      const long = createLongList({ label: title, item: pickable });
+      long.set(objects);
+      return group(title, { id: `params.all.${title}`, hint: String(objects.length) }, long.node);
+    }
+
+    function pickable(object) {
+      const node = element(
+        'button',
+        { type: 'button', class: 'object-item', 'aria-pressed': String(picked.has(object.name)), onclick: pick },
+        element('span', { class: 'object-name', text: object.name }),
+        ' ',
+        element('span', { class: 'object-hint', text: hintOf(object) }),
+      );
+      return node;
+
+      function pick() {
+        if (!picked.delete(object.name)) {
+          picked.add(object.name);
+          memory.set(`group.params.${object.name}`, true);
+        }
+        node.setAttribute('aria-pressed', String(picked.has(object.name)));
+        lab.want('params', [...picked]);
+      }
+    }
+
     /* A folded group is filled when it is first opened. */
-    function objectGroup(name) {
+    function objectGroup(name, here) {
       const node = group(TITLES[name] || name, { open: false, id: `params.${name}`, hint: hint(name) });
       const body = node.querySelector('.group-body');
       node.classList.add('param-group');
@@ -246,12 +303,12 @@ export const panel = {
       };
       node.addEventListener('toggle', fill);
       fill();
-      mark(node);
+      mark(node, here);
       return node;
     }
 
-    function changedRows(name) {
-      return (grouped(lab.scene.params).get(name) || []).filter(
+    function changedRows(name, groups = grouped(lab.scene.params)) {
+      return (groups.get(name) || []).filter(
         (row) =>
           row.initial !== null &&
           row.initial !== undefined &&
@@ -259,8 +316,8 @@ export const panel = {
       );
     }
 
-    function mark(node) {
-      const many = changedRows(node.dataset.object).length;
+    function mark(node, groups) {
+      const many = changedRows(node.dataset.object, groups).length;
       node.querySelector('.changed-count').textContent = many ? `${many} changed` : '';
       const reset = node.querySelector('.param-reset-group');
       if (reset) reset.hidden = !many;
@@ -295,13 +352,14 @@ export const panel = {
       rows.delete('found');
       list.hidden = true;
       results.hidden = false;
-      countLabel.textContent = `${best.length} found`;
+      const found = Math.min(FOUND_MAX, best.length);
+      countLabel.textContent = `${best.count} found`;
       replace(
         results,
         best.length
           ? element('p', {
               class: 'hint',
-              text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`,
+              text: best.count > found ? `${found} of ${best.count} found` : `${best.count} found`,
             })
           : empty('No parameter matches in name or description.'),
         best.slice(0, FOUND_MAX).map((row) => make('found', row, true)),

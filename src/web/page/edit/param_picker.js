@@ -1,7 +1,8 @@
 /* The search for parameters by words of their path, their description or everyday language, as in `cuvette params`; and
  * a field that chooses a parameter with it.
  * exports:
- *   findParams(lab, text, near) -> promise of rows, best first; among equals, the paths in the set near first
+ *   findParams(lab, text, near) -> promise of rows, best first; among equals, the paths in the set near first; count:
+ *                                  of all that match; of a large scene only the best rows are returned
  *   createParamPicker(lab, {label, onchoose(row)}) -> {node, input, row}
  *     row: the chosen row of the parameter table, or null while the text is no parameter's path */
 
@@ -9,10 +10,14 @@ import { element, replace, unique } from '../shared/ui.js';
 
 export async function findParams(lab, text, near = new Set()) {
   const { found } = await lab.get(`/api/params?find=${encodeURIComponent(text)}`);
-  return found
-    .flatMap((paths) => [...paths.filter((path) => near.has(path)), ...paths.filter((path) => !near.has(path))])
-    .map(lab.param)
-    .filter(Boolean);
+  const best = found.flatMap((paths) => [
+    ...paths.filter((path) => near.has(path)),
+    ...paths.filter((path) => !near.has(path)),
+  ]);
+  if (lab.scene?.whole === false) await lab.want('found', best.slice(0, FOUND_MAX));
+  const rows = best.map(lab.param).filter(Boolean);
+  rows.count = best.length;
+  return rows;
 }
 
 const FOUND_MAX = 60;

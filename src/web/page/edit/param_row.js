@@ -48,6 +48,13 @@ async function layersOf(lab, design) {
   return (await media).coatings.find(({ name }) => name === design)?.layers ?? design;
 }
 
+/* The names of the objects of a kind, unless there are too many to choose from. */
+function suggested(lab, kind) {
+  const names = kind ? lab.scene.objects.filter((each) => each.kind === kind).map((each) => each.name) : [];
+  return names.length <= NAMES_MAX ? names : [];
+}
+
+const NAMES_MAX = 200;
 const FORGET_MS = 8000;
 
 const labelOf = (name) => name.replaceAll('_', ' ');
@@ -96,7 +103,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     send,
     slider: () => known.slider,
     layers: (design) => layersOf(lab, design),
-    names: (lab.scene?.objects || []).filter((each) => each.kind === first.names).map((each) => each.name),
+    names: suggested(lab, first.names),
   });
   label.id = unique('label');
   if (control.single) label.htmlFor = control.single.id;

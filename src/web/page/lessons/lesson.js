@@ -81,6 +81,10 @@ export function createLesson(root, lab, lesson, { back, again }) {
   heading.focus();
   const ends = [lab.on('scene', changed), hand.end, () => lab.section?.present(null)];
   lab.section?.present(lesson.show);
+  lab.want(
+    'lesson',
+    lesson.controls.map(({ parameter }) => parameter.split('.')[0]),
+  );
   changed();
   return { shown: changed, end: () => ends.forEach((end) => end()) };
 

@@ -17,7 +17,10 @@
  *                                       void), opened ({file, link, lesson, new}: another scene), view (the image's
  *                                       placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
- *   lab.param(path)                     the row of that parameter; undefined if there is none
+ *   lab.param(path)                     the row of that parameter; undefined if there is none, or if the scene has so
+ *                                       many objects that only the rows of wanted ones are here (not scene.whole)
+ *   lab.want(key, names)                those rows, of objects or paths, from now on; replaces what the key wanted;
+ *                                       a promise that they are here
  *   lab.object(name)                    the object of that name; undefined if there is none
  *   lab.set(values, gesture)            {path: value}; promise of the reply. Sent in order; only the newest of a
  *                                       gesture waits
@@ -66,7 +69,8 @@ export function createLab() {
   let objects = new Map();
   let stream = null;
   let retry = 0;
-  let fetching = null;
+  let fetching = null; /* a promise */
+  const wants = new Map();
   let again = false;
   let stale = false;
   let changedAt = -Infinity;
@@ -94,6 +98,7 @@ export function createLab() {
     emit,
     dragging: () => dragged && performance.now() - changedAt < REST_MS,
     param: (path) => rows.get(path),
+    want,
     object: (name) => objects.get(name),
     say: (text) => console.info(text),
     fail: (error) => console.error(error),
@@ -250,40 +255,74 @@ export function createLab() {
     });
   }
 
+  async function want(key, names) {
+    wants.set(key, names);
+    if (lacksWanted()) await fetchScene();
+    if (lacksWanted()) await fetchScene(); /* the first was on its way already */
+  }
+
+  function wanted() {
+    return [...new Set([...wants.values()].flat())].filter(Boolean).join(',');
+  }
+
+  function lacksWanted() {
+    return lab.scene?.whole === false && lab.scene.of !== wanted();
+  }
+
   /* Calls during a fetch are merged into one more fetch. */
-  async function fetchScene() {
-    if (fetching) {
-      again = true;
-      return;
-    }
-    fetching = true;
+  function fetchScene() {
+    if (fetching) again = true;
+    else
+      fetching = fetchNow().finally(() => {
+        fetching = null;
+      });
+    return fetching;
+  }
+
+  async function fetchNow() {
     do {
       again = false;
       const complete = stale;
       stale = false;
       try {
         const known = complete ? null : lab.scene;
-        const reply = await api.get(known ? `/api/scene?since=${known.generation}` : '/api/scene');
-        const scene = applyScene(known, reply);
-        rows = new Map(scene.params.map((row) => [row.path, row]));
-        objects = new Map(scene.objects.map((object) => [object.name, object]));
-        lab.scene = scene;
-        emit('scene', scene);
+        takeScene(applyScene(known, await api.get(`/api/scene${question(known)}`), lab.scene));
         await new Promise((resolve) => setTimeout(resolve, SCENE_MS));
       } catch (error) {
         if (error.status) lab.fail(error);
         again = false;
         stale ||= complete;
       }
-    } while (again && lab.state && lab.scene && lab.scene.generation < lab.state.generation);
-    fetching = null;
+    } while (again && lab.state && lab.scene && (lab.scene.generation < lab.state.generation || lacksWanted()));
+  }
+
+  function question(known) {
+    const words = lab.scene?.whole === false ? wanted() : '';
+    const parts = [
+      known && `since=${known.generation}`,
+      words && `of=${encodeURIComponent(words)}`,
+      known && lacksWanted() && 'rows=all',
+    ].filter(Boolean);
+    return parts.length ? `?${parts.join('&')}` : '';
+  }
+
+  function takeScene(scene) {
+    rows = new Map(scene.params.map((row) => [row.path, row]));
+    if (scene.objects !== lab.scene?.objects) objects = new Map(scene.objects.map((object) => [object.name, object]));
+    lab.scene = scene;
+    emit('scene', scene);
+    if (lacksWanted()) again = true;
   }
 }
 
 /* The scene of /api/scene?since=GENERATION: the differences from that generation are applied to the page's copy, which
- * is not altered. A complete reply is the scene itself. */
-function applyScene(known, reply) {
-  if (reply.since === undefined) return reply;
+ * is not altered. A complete reply is the scene itself. The list of objects stays the same array as long as the objects
+ * do, so that lists of thousands need not compare them. */
+function applyScene(known, reply, before) {
+  if (reply.since === undefined) {
+    const alike = before && JSON.stringify(before.objects) === JSON.stringify(reply.objects);
+    return alike ? { ...reply, objects: before.objects } : reply;
+  }
   const { since, order, params, ...parts } = reply;
   const rows = new Map(known.params.map((row) => [row.path, row]));
   for (const row of params) rows.set(row.path, row);
