@@ -2,6 +2,7 @@
  * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
  * extension) */
 
+import { say, translated } from './shared/language.js';
 import { saveVideo } from './edit/video_dialog.js';
 import { showHelp } from './keys.js';
 import { displayButton, themeButton } from './shared/display.js';
@@ -75,12 +76,9 @@ export function createHead(root, lab) {
     write(file, { textContent: state.file || 'not saved to a file yet' });
     write(mark, { hidden: state.saved });
     write(document, { title: `${state.saved ? '' : '• '}${state.title || 'Cuvette'}` });
-    for (const [node, what, word] of [
-      [undo, state.undo, 'Undo'],
-      [redo, state.redo, 'Redo'],
-    ]) {
-      write(node, { disabled: !what, title: what ? `${word} ${what}` : `Nothing to ${word.toLowerCase()}` });
-    }
+    const [undone, redone] = [state.undo, state.redo].map(translated);
+    write(undo, { disabled: !undone, title: undone ? say('Undo {what}', { what: undone }) : say('Nothing to undo') });
+    write(redo, { disabled: !redone, title: redone ? say('Redo {what}', { what: redone }) : say('Nothing to redo') });
   });
 }
 

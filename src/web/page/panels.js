@@ -11,6 +11,7 @@
  *            begins each rule with .panel-ID; a site has all style sheets in its page, as #styles (src/web/site)
  * The panel's title is its h2: headings in it begin at h3. */
 
+import { say } from './shared/language.js';
 import { element, icon, memory, notice, replace } from './shared/ui.js';
 
 const NARROWEST = 300;
@@ -114,7 +115,10 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     } catch (error) {
       console.error(error);
       entry.created = true;
-      replace(entry.root, notice(`This panel failed: ${error.message}`, { kind: 'error', remedy: 'reload the page' }));
+      replace(
+        entry.root,
+        notice(say('This panel failed: {why}', { why: error.message }), { kind: 'error', remedy: 'reload the page' }),
+      );
     }
   }
 
@@ -200,7 +204,7 @@ function createSplitter(splitter, workspace) {
     if (kept[name]) root.setProperty(variable, `${Math.round(Math.min(largest, Math.max(least, kept[name])))}px`);
     else root.removeProperty(variable);
     splitter.setAttribute('aria-orientation', sheet.matches ? 'horizontal' : 'vertical');
-    splitter.setAttribute('aria-label', sheet.matches ? 'Height of the panels' : 'Width of the panels');
+    splitter.setAttribute('aria-label', sheet.matches ? say('Height of the panels') : say('Width of the panels'));
     splitter.setAttribute('aria-valuemin', String(least));
     splitter.setAttribute('aria-valuemax', String(Math.round(largest)));
     splitter.setAttribute('aria-valuenow', String(Math.round(here())));

@@ -2,6 +2,7 @@
  * that changes cannot be kept.
  * exports: createRescue(root, lab) */
 
+import { say } from './shared/language.js';
 import { returned, session } from './shared/address.js';
 import { ask, button, element, icon, replace } from './shared/ui.js';
 
@@ -57,7 +58,8 @@ function keepScene(lab) {
 
 /* --- the bar --- */
 
-const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
+const when = (time) =>
+  new Date(time).toLocaleString(document.documentElement.lang, { dateStyle: 'medium', timeStyle: 'short' });
 
 export function createRescue(root, lab) {
   let shown = ''; /* key of the bar's content, which is drawn only if it changes */
@@ -88,21 +90,22 @@ export function createRescue(root, lab) {
   }
 
   async function discard({ id, title }) {
-    const name = title || 'the rescued scene';
-    if (await ask('Discard', `Discard the unsaved changes of ${name}? They cannot be restored.`, 'Discard', 'danger'))
-      await act('discard', id);
+    const question = title
+      ? say('Discard the unsaved changes of {title}? They cannot be restored.', { title })
+      : say('Discard the unsaved changes of the rescued scene? They cannot be restored.');
+    if (await ask('Discard', question, 'Discard', 'danger')) await act('discard', id);
   }
 
   function offer(scene, more) {
-    const name = [scene.title || 'Untitled scene', scene.file].filter(Boolean).join(', ');
+    const name = [scene.title || say('Untitled scene'), scene.file].filter(Boolean).join(', ');
     fill(
       `${scene.id} ${more}`,
       icon('info'),
       element(
         'span',
         { class: 'rescue-words', role: 'status' },
-        element('strong', { text: `An unsaved scene of ${when(scene.time)} was rescued: ` }),
-        more ? `${name} (and ${more} more)` : name,
+        element('strong', { text: `${say('An unsaved scene of {time} was rescued:', { time: when(scene.time) })} ` }),
+        more ? say('{name} (and {n} more)', { name, n: more }) : name,
       ),
       element(
         'span',

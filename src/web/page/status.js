@@ -5,6 +5,7 @@
  *                                       that withdraws the message, and lab.fail(error)
  *   createBanner(banner, parts, lab)    the parts become inert while the engine is lost */
 
+import { say, translated } from './shared/language.js';
 import { located } from './shared/api.js';
 import { button, copy, count, digits, element, icon, replace, seconds } from './shared/ui.js';
 
@@ -16,7 +17,7 @@ const words = {
   lost: ({ kind, lost }) =>
     kind === 'server'
       ? ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.']
-      : [lost().error, lost().remedy].map(sentence),
+      : [lost().error, lost().remedy].map(translated).map(sentence),
   refused: () => [
     "The server does not accept this page's token.",
     'The server was probably restarted: open the new address in its terminal.',
@@ -70,7 +71,8 @@ export function createStatus(root, live, lab) {
     message.replaceChildren();
   };
 
-  function showMessage(words, kind, remedy, action) {
+  function showMessage(given, kind, givenRemedy, action) {
+    const [words, remedy] = [given, givenRemedy].map(translated);
     clearTimeout(timer);
     replace(
       message,
@@ -138,12 +140,15 @@ function items(lab) {
       title: behind ? 'rendering' : 'final image',
     }),
     noted ? notesButton(noted, lab) : null,
-    fact('pass', image.passes ? `${image.pass} of ${image.passes}` : String(image.pass)),
+    fact(
+      'pass',
+      image.passes ? say('{pass} of {passes}', { pass: image.pass, passes: image.passes }) : String(image.pass),
+    ),
     fact(
       'size',
       image.width === image.full_width
         ? `${image.full_width} × ${image.full_height}`
-        : `${image.width} × ${image.height} of ${image.full_width} × ${image.full_height}`,
+        : say('{width} × {height} of {full_width} × {full_height}', image),
     ),
     time(lab.engine, wall),
     fact('rays', count(rays)),
@@ -158,7 +163,7 @@ function items(lab) {
     fact(
       'generation',
       String(image.generation),
-      state && state.generation > image.generation ? `the scene is at generation ${state.generation}` : null,
+      state && state.generation > image.generation ? say('the scene is at generation {generation}', state) : null,
     ),
   ];
 }
@@ -181,7 +186,7 @@ const notesButton = (noted, lab) =>
       onclick: () => lab.notes.show(),
     },
     icon('warning'),
-    element('span', { text: noted === 1 ? '1 note' : `${noted} notes` }),
+    element('span', { text: say('{n} notes', { n: noted }) }),
   );
 
 const hash = (words, lab) =>
@@ -190,7 +195,7 @@ const hash = (words, lab) =>
     {
       type: 'button',
       class: 'hash',
-      'aria-label': `copy film hash ${words}`,
+      'aria-label': say('copy film hash {hash}', { hash: words }),
       onclick: () => copy(words).then(() => lab.say('The film hash is on the clipboard.'), lab.fail),
     },
     words,

@@ -10,14 +10,16 @@
  *   located(error)                         its message after file, line and column, as the program prints it
  * ApiError: message, remedy, status (0: no answer), and file, line, column if the reply has them. */
 
+import { say, translated } from './language.js';
+
 const LIMIT_MS = 60000;
 
 class ApiError extends Error {
   constructor(status, reply = {}) {
-    super(reply.error || `the laboratory answered ${status}`);
+    super(translated(reply.error) || say('the laboratory answered {status}', { status }));
     this.name = 'ApiError';
     this.status = status;
-    this.remedy = reply.remedy || '';
+    this.remedy = translated(reply.remedy) || '';
     for (const key of ['file', 'line', 'column']) {
       if (reply[key] !== undefined) this[key] = reply[key];
     }

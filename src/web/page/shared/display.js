@@ -6,6 +6,7 @@
  *   isDark()               whether the theme is dark
  *   labelSize()            of texts that are drawn over the image, CSS pixels */
 
+import { say, translated } from './language.js';
 import { button, checkbox, choice, dialog, element, icon, memory } from './ui.js';
 
 const root = document.documentElement;
@@ -48,7 +49,8 @@ export function createDisplay(lab) {
   lab.display = {
     toggle(name) {
       set(name, !on[name]);
-      lab.say(`${NAMES[name]} ${on[name] ? 'on' : 'off'}.`);
+      const what = translated(NAMES[name]);
+      lab.say(on[name] ? say('{what} on.', { what }) : say('{what} off.', { what }));
     },
     open: () => openDialog(on, set),
   };
@@ -97,7 +99,7 @@ export function themeButton() {
   const show = () => {
     face.replaceChildren(icon(isDark() ? 'sun' : 'moon'));
     node.setAttribute('aria-pressed', String(isDark()));
-    node.title = isDark() ? 'Light theme' : 'Dark theme';
+    node.title = isDark() ? say('Light theme') : say('Dark theme');
   };
   listeners.add(show);
   show();

@@ -5,6 +5,7 @@
  *   depthNote(tree, lab) -> {text, label, values}       how much of a pixel's light the depth limit cuts off, as a note
  *                                                       and its remedy; null below 1 % */
 
+import { say, translated } from './language.js';
 import { button, dialog, digits, element } from './ui.js';
 
 export function createNotes(lab) {
@@ -18,7 +19,7 @@ export function createNotes(lab) {
   function actionOf(note) {
     const action = noteAction(note);
     if (!action) return null;
-    const what = Object.entries(action.values).map(([path, value]) => `${path} is ${value}`);
+    const what = Object.entries(action.values).map(([path, value]) => say('{path} is {value}', { path, value }));
     const done = () => lab.say(`${what.join(', ')}.`);
     return { label: action.label, act: () => lab.set(action.values).then(done, lab.fail) };
   }
@@ -38,8 +39,13 @@ export function createNotes(lab) {
               'li',
               {},
               note.place ? element('code', { text: note.place }) : null,
-              element('span', { text: `${note.place ? ' ' : ''}${note.text}.` }),
-              note.remedy ? element('span', { class: 'notes-remedy', text: ` Remedy: ${note.remedy}.` }) : null,
+              element('span', { text: `${note.place ? ' ' : ''}${translated(note.text)}.` }),
+              note.remedy
+                ? element('span', {
+                    class: 'notes-remedy',
+                    text: ` ${say('Remedy: {remedy}.', { remedy: translated(note.remedy) })}`,
+                  })
+                : null,
               noteReason(note).map((text) => element('p', { class: 'notes-remedy', text })),
               actOn(note),
             ),
@@ -60,7 +66,7 @@ export function createNotes(lab) {
       return;
     }
     const [first, ...more] = notes.filter((note) => !known.has(line(note)));
-    const rest = more.length ? `; and ${more.length} more` : '';
+    const remedy = translated(first?.remedy);
     if (said && !notes.some((note) => line(note) === said.line)) {
       said.withdraw();
       said = null;
@@ -68,7 +74,13 @@ export function createNotes(lab) {
     if (first && !openDialog)
       said = {
         line: line(first),
-        withdraw: lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first)),
+        withdraw: lab.say(
+          first.place
+            ? say('Note: {place}: {text}', { place: first.place, text: translated(first.text) })
+            : say('Note: {text}', { text: translated(first.text) }),
+          more.length ? say('{remedy}; and {n} more', { remedy, n: more.length }) : remedy,
+          actionOf(first),
+        ),
       };
     if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
@@ -90,10 +102,12 @@ export function createNotes(lab) {
 }
 
 const CUT_LEAST = 0.01;
-const LABELS = { 'render.depth': 'Raise the depth' };
 const WITHOUT_LIMIT = { 'render.integrator': 'path', 'render.depth': 'unlimited' };
 
-const labelOf = (path, text) => `${LABELS[path] || `Set ${path}`} to ${text}`;
+const labelOf = (path, value) =>
+  path === 'render.depth'
+    ? say('Raise the depth to {value}', { value })
+    : say('Set {path} to {value}', { path, value });
 
 function noteAction({ remedy }) {
   const set = /^set ([\w.-]+=[\w.+-]+(?: and [\w.-]+=[\w.+-]+)*)/.exec(remedy || '');
@@ -101,7 +115,9 @@ function noteAction({ remedy }) {
   const pairs = set[1].split(' and ').map((one) => one.split('='));
   const values = pairs.map(([path, text]) => [path, Number.isFinite(Number(text)) ? Number(text) : text]);
   const label =
-    pairs.length === 1 ? labelOf(...pairs[0]) : `Set ${pairs.map(([path, text]) => `${path} to ${text}`).join(', ')}`;
+    pairs.length === 1
+      ? labelOf(...pairs[0])
+      : say('Set {list}', { list: pairs.map((pair) => pair.join(' = ')).join(', ') });
   return { label, values: Object.fromEntries(values) };
 }
 
@@ -125,9 +141,19 @@ export function depthNote(tree, lab) {
   if (fraction < CUT_LEAST) return null;
   const percent = digits(100 * fraction, 2);
   const value = Math.min(most, Math.max(depth + 2, 2 * depth));
-  const effect = beyond === 'black' ? 'are black there, so the pixel is too dark' : 'have the colour of the sky there';
   return {
-    text: `Rays with ${percent} % of this pixel's weight end at the depth limit, ${depth}, and ${effect}.`,
+    text:
+      beyond === 'black'
+        ? say(
+            "Rays with {percent} % of this pixel's weight end at the depth limit, {depth}, " +
+              'and are black there, so the pixel is too dark.',
+            { percent, depth },
+          )
+        : say(
+            "Rays with {percent} % of this pixel's weight end at the depth limit, {depth}, " +
+              'and have the colour of the sky there.',
+            { percent, depth },
+          ),
     ...(depth < most
       ? { label: labelOf('render.depth', value), values: { 'render.depth': value } }
       : { label: 'Use random paths without a limit', values: WITHOUT_LIMIT }),

@@ -1,17 +1,18 @@
 /* Files from the laboratory, saved by the browser.
  * exports:
- *   saveFile(lab, address, ending, more)   waits for the final image; the name is the scene's; more: the end of the
- *                                          message 'NAME saved'
- *   savePage(lab, more, drawing)           the image as a page, with the laboratory if the page has its text; drawing:
+ *   saveFile(lab, address, ending, refusal)   waits for the final image; the name is the scene's; refusal: why the file
+ *                                          does not hold the scene
+ *   savePage(lab, refusal, drawing)        the image as a page, with the laboratory if the page has its text; drawing:
  *                                          over the image, in place of the page's rays (snapshot.js)
  *   saveReply(lab, address, name)          any other reply */
 
+import { say } from './language.js';
 import { dataAddress, textOf } from './snapshot.js';
 import { download } from './ui.js';
 
-export async function savePage(lab, more, drawing = null) {
+export async function savePage(lab, refusal, drawing = null) {
   const server = lab.engine.kind === 'server';
-  await saveFile(lab, `/api/page.html${server ? '' : `?${PLACE_FOR_LABORATORY}`}`, 'html', more, async (blob) => {
+  await saveFile(lab, `/api/page.html${server ? '' : `?${PLACE_FOR_LABORATORY}`}`, 'html', refusal, async (blob) => {
     const page = server ? blob : await withLaboratory(blob);
     return drawing ? withDrawing(page, drawing) : page;
   });
@@ -28,12 +29,15 @@ async function withDrawing(blob, drawing) {
   return new Blob([text.slice(0, at), UNSEEN, textOf(drawing), text.slice(at)], { type: blob.type });
 }
 
-export async function saveFile(lab, address, ending, more = '', complete = (blob) => blob) {
+export async function saveFile(lab, address, ending, refusal = '', complete = (blob) => blob) {
   lab.say('Waiting for the final image …');
   try {
     const { blob } = await lab.blob(address);
     download(await complete(blob), `${lab.name()}.${ending}`);
-    lab.say(`${lab.name()}.${ending} saved${more}.`);
+    const name = `${lab.name()}.${ending}`;
+    lab.say(
+      refusal ? say('{name} saved without the scene: {why}.', { name, why: refusal }) : say('{name} saved.', { name }),
+    );
   } catch (error) {
     lab.fail(error);
   }
@@ -43,7 +47,7 @@ export async function saveReply(lab, address, name) {
   try {
     const { blob } = await lab.blob(address);
     download(blob, name);
-    lab.say(`${name} saved.`);
+    lab.say(say('{name} saved.', { name }));
   } catch (error) {
     lab.fail(error);
   }

@@ -17,7 +17,7 @@ import { codeOfPng } from './png_chunks.js';
 import { printCode, printState } from './print.js';
 import { saveFile, savePage } from './save_file.js';
 import { createLinks } from './share_link.js';
-import { button, dialog, element, notice, replace } from './ui.js';
+import { button, dialog, element, notice, replace, write } from './ui.js';
 
 /* --- links --- */
 
@@ -58,7 +58,7 @@ export const LENS_FILES = '.zmx,.dat,.csv';
 export async function openLens(lab, name, text) {
   try {
     const { note } = await lab.change('/api/open', { lens: name, text });
-    lab.say(`The scene of ${name} is shown; Undo restores the previous one.`, note);
+    lab.say(say('The scene of {name} is shown; Undo restores the previous one.', { name }), note);
   } catch (error) {
     lab.fail(error);
   }
@@ -73,14 +73,14 @@ function textOf(bytes) {
 export async function openFile(lab, file) {
   if (LENS_FILES.split(',').some((ending) => file.name.toLowerCase().endsWith(ending))) {
     if (file.size < LARGEST_LENS) await openLens(lab, file.name, textOf(new Uint8Array(await file.arrayBuffer())));
-    else lab.fail({ message: `${file.name} is too large`, remedy: 'choose a lens file below 500 kB' });
+    else lab.fail({ message: say('{name} is too large', file), remedy: 'choose a lens file below 500 kB' });
     return;
   }
   const code = file.size <= LARGEST ? codeOf(new Uint8Array(await file.arrayBuffer())) : null;
   if (code) await openText(lab, `#scene=${code}`);
   else
     lab.fail({
-      message: `${file.name} holds no scene`,
+      message: say('{name} holds no scene', file),
       remedy: 'choose a PNG image or HTML file of Cuvette; an image of a scene that reads files holds none',
     });
 }
@@ -127,7 +127,7 @@ export function share(lab) {
     made.close();
     what(await refusing);
   };
-  const save = (file) => act((refusal) => file(refusal ? ` without the scene: ${refusal.message}` : ''));
+  const save = (file) => act((refusal) => file(refusal ? refusal.message : ''));
   const links = createLinks(lab, {
     code: linking.then(({ link }) => link),
     print: printCode,
@@ -140,14 +140,14 @@ export function share(lab) {
     'PNG with the scene',
     'download',
     'The image; Cuvette opens it again as a scene.',
-    save((more) => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png', more)),
+    save((refusal) => saveFile(lab, '/api/image.png?wait=1&scene=1', 'png', refusal)),
   );
   const html = form(
     'HTML file',
     'download',
     'Image, rays with their numbers, scene and command in one file that every browser opens, without Cuvette. ' +
       'If this laboratory has the engine for browsers, the reader can also turn the scene.',
-    save((more) => savePage(lab, more)),
+    save((refusal) => savePage(lab, refusal)),
   );
   const trouble = element('div', { 'aria-live': 'polite' });
   const made = dialog({
@@ -189,8 +189,8 @@ function form(label, icon, words, act) {
   return {
     node: element('div', { class: 'share-form' }, made, hint),
     set(nextLabel, nextWords) {
-      made.querySelector('.button-label').textContent = nextLabel;
-      hint.textContent = nextWords;
+      write(made.querySelector('.button-label'), { textContent: nextLabel });
+      write(hint, { textContent: nextWords });
     },
   };
 }

@@ -31,6 +31,7 @@
  *   lab.start()                         opens the event stream
  *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
+import { say, translated } from './language.js';
 import { createApi } from './api.js';
 import { createQueue } from './change_queue.js';
 import { engine } from './engine.js';
@@ -130,7 +131,7 @@ export function createLab() {
       )
       .then((reply) => {
         const [first] = reply.notes || []; /* parameters that have no effect */
-        if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
+        if (first) lab.say(say('Note: {place}: {text}', { ...first, text: translated(first.text) }), first.remedy);
         return reply;
       });
   return lab;

@@ -4,6 +4,7 @@
  * writes it
  *   now: the present value of measure.x_parameter, NaN if there is none; predicted: as typed or chosen, or null */
 
+import { say, translated } from './language.js';
 import { plot } from './plot.js';
 import { digits, element, table } from './ui.js';
 
@@ -12,7 +13,11 @@ const MARKS = 30; /* more would hide the line */
 let unfolded = false; /* a new measurement leaves the table open */
 
 /* Replaces a unit in ASCII, as on the command line, by the page's spelling. */
-export const pretty = (text) => text.replace(/, deg\b/, ' (°)').replace(/, (px|m|scene units)\b/, ' ($1)');
+export function pretty(text) {
+  const [, name, unit] = /^(.*?)(?:, (deg|px|m|scene units))?$/.exec(text);
+  if (!unit) return translated(name);
+  return `${translated(name)} (${unit === 'deg' ? '°' : translated(unit)})`;
+}
 
 /* The number of a prediction: as typed, or the only number in the text of the choice; otherwise NaN. */
 function numberIn(predicted) {
@@ -24,9 +29,16 @@ function numberIn(predicted) {
 function marksOf({ prediction }, now, predicted) {
   const guess = numberIn(predicted);
   return [
-    Number.isFinite(now) ? { axis: 'x', at: now, text: `now: ${digits(now)}`, kind: 'now' } : null,
+    Number.isFinite(now)
+      ? { axis: 'x', at: now, text: say('now: {value}', { value: digits(now) }), kind: 'now' }
+      : null,
     prediction?.axis && Number.isFinite(guess)
-      ? { axis: prediction.axis, at: guess, text: `your prediction: ${digits(guess)}`, kind: 'predicted' }
+      ? {
+          axis: prediction.axis,
+          at: guess,
+          text: say('your prediction: {value}', { value: digits(guess) }),
+          kind: 'predicted',
+        }
       : null,
   ].filter(Boolean);
 }
@@ -36,7 +48,7 @@ function spotsOf({ measure }, { points, measured }, now) {
   const near = (at) => points.reduce((a, b) => (Math.abs(b[0] - at) < Math.abs(a[0] - at) ? b : a));
   const x = Number.isFinite(measure.at) ? near(measure.at)[0] : measure.over ? now : NaN;
   return Number.isFinite(x) && Number.isFinite(measured)
-    ? [{ x, y: measured, text: `${measure.reading}: ${digits(measured, 6)}` }]
+    ? [{ x, y: measured, text: `${translated(measure.reading)}: ${digits(measured, 6)}` }]
     : [];
 }
 
@@ -64,7 +76,7 @@ export function theoryChart(lesson, result, { now = NaN, predicted = null } = {}
     element(
       'figcaption',
       { class: 'hint' },
-      element('span', { class: 'theory-key theory', text: `theory: ${timed ? 'ideal' : 'closed form'}` }),
+      element('span', { class: 'theory-key theory', text: timed ? 'theory: ideal' : 'theory: closed form' }),
       element('span', {
         class: 'theory-key measured',
         text: timed ? 'measured: times of frames' : 'measured by the program',
@@ -80,7 +92,7 @@ export function theoryChart(lesson, result, { now = NaN, predicted = null } = {}
       },
       element('summary', { text: 'Numbers' }),
       table({
-        caption: `${lesson.title}: curve`,
+        caption: say('{title}: curve', { title: translated(lesson.title) }),
         hideCaption: true,
         columns: [
           { label: pretty(x), numeric: true },

@@ -78,7 +78,7 @@ export function button(label, onclick, { icon: drawing, kind, title, pressed, sm
       ...rest,
     },
     face,
-    element('span', { class: bare ? 'visually-hidden' : 'button-label', text: label }),
+    element('span', { class: bare ? 'visually-hidden' : 'button-label', text: label, translate: rest.translate }),
   );
   return node;
 }
