@@ -4,6 +4,7 @@
  *   createBenchFan(lab, bench, changed) -> {node}     sets bench.fan, the reply of /api/fan, while it is shown
  *   fanMarks(fan, {stroke(line, class), dot(point, class)}) -> SVG elements of that reply, over the image */
 
+import { say } from '../shared/language.js';
 import { showImage } from '../shared/images.js';
 import { saveReply } from '../shared/save_file.js';
 import {
@@ -189,14 +190,19 @@ export function createBenchFan(lab, bench, changed) {
   function numbers({ rays: list, followed, crossings, focus }) {
     const bent = list.map((ray) => ray.deviation_deg).filter((angle) => angle !== null);
     return [
-      ['Rays', `${list.length}, ${followed} followed to the end`],
-      ['Deviation', bent.length ? `${digits(Math.min(...bent), 6)}° to ${digits(Math.max(...bent), 6)}°` : '–'],
-      ['Crossings of neighbours', `${crossings.length} (the caustic)`],
+      ['Rays', say('{rays}, {followed} followed to the end', { rays: list.length, followed })],
+      [
+        'Deviation',
+        bent.length
+          ? say('{least}° to {most}°', { least: digits(Math.min(...bent), 6), most: digits(Math.max(...bent), 6) })
+          : '–',
+      ],
+      ['Crossings of neighbours', say('{n} (the caustic)', { n: crossings.length })],
       [
         focus?.virtual ? 'Virtual mean focus' : 'Mean focus',
         focus ? vector(focus.at.map(tidy), 6) : 'none: parallel rays',
       ],
-      ['Rms distance from the focus', focus ? `${digits(focus.rms, 3)} scene units` : '–'],
+      ['Rms distance from the focus', focus ? say('{length} scene units', { length: digits(focus.rms, 3) }) : '–'],
     ];
   }
 

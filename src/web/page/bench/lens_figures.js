@@ -5,6 +5,7 @@
  *   wavelengths(report) -> [nm]                     of its fans, in rising order
  *   lensGroups(report, nm) -> [node]                nm: only this wavelength; 0: all */
 
+import { say } from '../shared/language.js';
 import { plot } from '../shared/plot.js';
 import { digits, element, facts, group, table } from '../shared/ui.js';
 
@@ -67,7 +68,7 @@ const fieldsOf = (report) => {
   const unit = report.sections.fields.units.field_y === 'deg' ? '°' : ' mm';
   return records(report, 'fields').map(({ field, field_x: x, field_y: y }) => ({
     field,
-    label: `Field ${field}: ${digits(x === 0 ? y : Math.hypot(x, y), 5)}${unit}`,
+    label: say('Field {field}: {place}', { field, place: `${digits(x === 0 ? y : Math.hypot(x, y), 5)}${unit}` }),
   }));
 };
 
@@ -189,13 +190,15 @@ function spots(report, nm) {
       {
         height: SQUARE,
         x: { label: 'mm', ends },
-        circles: [{ x: 0, y: 0, r: airy, text: `Airy's first dark ring, radius ${digits(airy)} mm` }],
+        circles: [
+          { x: 0, y: 0, r: airy, text: say("Airy's first dark ring, radius {radius} mm", { radius: digits(airy) }) },
+        ],
       },
     );
   return group(
     'Spots',
     { id: 'lens.spots', hint: 'by field and wavelength' },
-    key([...keyOfWaves(all, nm), [`Airy circle, radius ${digits(airy)} mm`, 'circle']]),
+    key([...keyOfWaves(all, nm), [say('Airy circle, radius {radius} mm', { radius: digits(airy) }), 'circle']]),
     row(...fieldsOf(report).map(ofField)),
     spotTable(report, nm),
   );
@@ -209,7 +212,7 @@ function fans(report, nm, { id, title, quantities, label }) {
     planes.flatMap((list, plane) =>
       all.map((each) =>
         curve(
-          `${['tangential', 'sagittal'][plane]}, ${digits(each, 7)} nm`,
+          `${[say('tangential'), say('sagittal')][plane]}, ${digits(each, 7)} nm`,
           points(
             list.filter((one) => one.field === field && one.lambda_nm === each),
             quantities[plane],

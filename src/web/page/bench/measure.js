@@ -5,6 +5,7 @@
  *   measure(points) -> [[name, text]]    distances of successive points; for three, the angle at the second
  *   hitFacts(segment) -> [[name, text]]  Snell's and Fresnel's numbers at the end of a segment */
 
+import { say } from '../shared/language.js';
 import { digits, vector } from '../shared/ui.js';
 import { dot, length, minus, unit } from '../shared/vectors.js';
 
@@ -15,9 +16,12 @@ export const degrees = (angle, n) => `${digits(angle, n)}°`;
 const number = (x) => digits(x, DIGITS);
 
 export function measure(points) {
-  const list = points.map((point, i) => [`Point ${i + 1}`, vector(point, 6)]);
+  const list = points.map((point, i) => [say('Point {number}', { number: i + 1 }), vector(point, 6)]);
   for (let i = 1; i < points.length; i++)
-    list.push([`Distance ${i}–${i + 1}`, `${number(length(minus(points[i], points[i - 1])))} scene units`]);
+    list.push([
+      say('Distance {from}–{to}', { from: i, to: i + 1 }),
+      say('{length} scene units', { length: number(length(minus(points[i], points[i - 1]))) }),
+    ]);
   if (points.length === 3) {
     const [a, b] = [unit(minus(points[0], points[1])), unit(minus(points[2], points[1]))];
     if (a && b) list.push(['Angle at point 2', degrees(angleOf(dot(a, b)), DIGITS)]);
@@ -30,19 +34,32 @@ export function hitFacts({ beam, ray, one, power }) {
   const { hit } = node;
   const snell = hit?.snell;
   const list = [
-    ['Beam', `${beam}, ray ${ray.number + 1}, ${digits(ray.lambda_nm, 6)} nm`],
-    ['Power at its start', `${number(power)} (${number((100 * power) / ray.power)} % of the ray)`],
+    [
+      'Beam',
+      say('{beam}, ray {number}, {wavelength} nm', {
+        beam,
+        number: ray.number + 1,
+        wavelength: digits(ray.lambda_nm, 6),
+      }),
+    ],
+    [
+      'Power at its start',
+      say('{power} ({percent} % of the ray)', {
+        power: number(power),
+        percent: number((100 * power) / ray.power),
+      }),
+    ],
     ['Medium', `${node.medium}, n ${number(node.n)}`],
   ];
   if (!hit) return [...list, ['Ends', node.end === 'sky' ? 'in the background' : 'at the limit of depth or power']];
   list.push(
     ['Hits', `${hit.solid}, ${hit.surface}`],
-    ['Length', `${number(hit.t)} scene units`],
+    ['Length', say('{length} scene units', { length: number(hit.t) })],
     ['Point', vector(hit.point, 6)],
     ['Normal', vector(hit.normal, 6)],
     ['Angle of incidence', degrees(snell.incidence_deg, DIGITS)],
   );
-  if (hit.opaque) return [...list, ['Surface', `opaque, R ${number(hit.R)}`]];
+  if (hit.opaque) return [...list, ['Surface', say('opaque, R {R}', { R: number(hit.R) })]];
   list.push(
     ['Angle of refraction', hit.tir ? 'none: total reflection' : degrees(snell.refraction_deg, DIGITS)],
     ['n₁ → n₂', `${number(hit.from.n)} (${hit.from.medium}) → ${number(hit.to.n)} (${hit.to.medium})`],

@@ -2,6 +2,7 @@
  * fan of rays, and the scene's optics compared with theory.
  * exports: panel. The tool Bench chooses a segment by a click; with Measure on, it sets points. */
 
+import { say } from '../shared/language.js';
 import { createRow } from '../edit/param_row.js';
 import { button, checkbox, digits, element, empty, facts, group, notice, replace, table } from '../shared/ui.js';
 import { createPointHandles } from '../view/point_handles.js';
@@ -73,8 +74,8 @@ function start(lab) {
 function endsOf(lab, beam) {
   if (bench.measuring) return [];
   return [
-    { path: `${beam}.position`, name: `start of ${beam}` },
-    { path: `${beam}.target`, name: `target of ${beam}` },
+    { path: `${beam}.position`, name: say('start of {beam}', { beam }) },
+    { path: `${beam}.target`, name: say('target of {beam}', { beam }) },
   ].filter(({ path }) => beam && lab.param(path));
 }
 
@@ -169,8 +170,12 @@ function createBeams(lab) {
     if (!beams.includes(bench.beam)) bench.beam = beams[0] || '';
     replace(
       list,
-      beams.map((name) => button(name, () => selectBeam(name), { small: true, pressed: name === bench.beam })),
-      bench.beam ? button(`Remove ${bench.beam}`, remove, { icon: 'trash', small: true, kind: 'danger' }) : null,
+      beams.map((name) =>
+        button(name, () => selectBeam(name), { small: true, pressed: name === bench.beam, translate: 'no' }),
+      ),
+      bench.beam
+        ? button(say('Remove {name}', { name: bench.beam }), remove, { icon: 'trash', small: true, kind: 'danger' })
+        : null,
     );
     const beamRows = (lab.scene?.params || []).filter((row) => bench.beam && row.path === `${bench.beam}.${row.name}`);
     const now = beamRows.map((row) => row.path).join();
@@ -225,7 +230,11 @@ function createNumbers() {
         node,
         chosen ? facts(hitFacts(chosen)) : empty('Choose the tool Bench and click a beam, or a row below.'),
         table({
-          caption: `Hits of ${first.beam}, ray ${first.ray.number + 1}, ${digits(first.ray.lambda_nm, 5)} nm`,
+          caption: say('Hits of {beam}, ray {number}, {wavelength} nm', {
+            beam: first.beam,
+            number: first.ray.number + 1,
+            wavelength: digits(first.ray.lambda_nm, 5),
+          }),
           columns: ['Ray', 'Angles', 'R', 'T', { label: 'Power', numeric: true }],
           rows: hitRows(sameRay.slice(0, 200)),
           onrow: (row, _, line) => row.addEventListener('click', () => choose(sameRay[line])),

@@ -1,9 +1,10 @@
 /* The panel Lens: the report on the lens of the scene, as `cuvette lens report`; renewed after a change of the scene
  * while it is shown. exports: panel */
 
+import { say } from '../shared/language.js';
 import { saveReply } from '../shared/save_file.js';
 import { LENS_FILES, openFile, openLens } from '../shared/share.js';
-import { button, checkbox, choice, element, empty, notice, replace, text } from '../shared/ui.js';
+import { button, checkbox, choice, digits, element, empty, notice, replace, text } from '../shared/ui.js';
 import { lensGroups, wavelengths } from './lens_figures.js';
 
 const REST_MS = 500; /* without a change, before the report is renewed */
@@ -80,7 +81,10 @@ function starters(lab) {
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'Open a lens' },
       Object.keys(EXAMPLES).map(example),
-      button('Lens file …', () => input.click(), { icon: 'folder', title: `A file that ends in ${LENS_FILES}` }),
+      button('Lens file …', () => input.click(), {
+        icon: 'folder',
+        title: say('A file that ends in {endings}', { endings: LENS_FILES }),
+      }),
     ),
     input,
   );
@@ -105,7 +109,7 @@ function createControls(lab, renew, draw) {
     });
   const save = (ending) =>
     button(
-      `Save ${ending.toUpperCase()}`,
+      say('Save {format}', { format: ending.toUpperCase() }),
       () => saveReply(lab, `/api/lens${ending === 'csv' ? '.csv' : ''}${query()}`, `${lab.name()}-lens.${ending}`),
       { icon: 'download', small: true },
     );
@@ -149,7 +153,7 @@ function createControls(lab, renew, draw) {
       all.length > 1
         ? choice({
             label: 'Show',
-            choices: [['0', 'all wavelengths'], ...all.map((nm) => [String(nm), `${Number(nm.toPrecision(7))} nm`])],
+            choices: [['0', 'all wavelengths'], ...all.map((nm) => [String(nm), `${digits(nm, 7)} nm`])],
             value: String(state.nm),
             onchange: (value) => {
               state.nm = Number(value);

@@ -2,6 +2,7 @@
  * top view.
  * exports: panel. The tool Inspect selects the pixel: click, drag or arrow keys; Escape clears. */
 
+import { say } from '../shared/language.js';
 import { isDark } from '../shared/display.js';
 import { showImage } from '../shared/images.js';
 import { depthNote } from '../shared/notes.js';
@@ -68,7 +69,9 @@ function start(lab) {
  * to an earlier view. */
 function note(lab) {
   const { pixel } = question;
-  const which = pixel && `Rays of pixel ${pixel.x}, ${pixel.y}${question.moved ? ' of an earlier view' : ''}`;
+  const which =
+    pixel &&
+    (question.moved ? say('Rays of pixel {x}, {y} of an earlier view', pixel) : say('Rays of pixel {x}, {y}', pixel));
   lab.view.note('pixel', pixel && (lab.view.chosen !== 'ask' || question.moved) ? which : null, () => {
     question.clear();
     lab.view.stage.focus();
@@ -142,7 +145,7 @@ function summary(tree) {
     ['Radiance', radiance.map((x) => digits(x)).join(' · ')],
     ['Displayed as', tinted],
     ['Rays', `${count(tree.rays.length)}: ${parts(tree)}`],
-    ['Deepest level', `${deepest} (limit ${depth})`],
+    ['Deepest level', say('{deepest} (limit {depth})', { deepest, depth })],
     ['Refractive indices at', `${digits(lambda)} nm`],
   ]);
 }
@@ -194,7 +197,7 @@ function legend() {
 
 function openDrawing(lab, { x, y }) {
   const address = `/api/trace.svg?x=${x}&y=${y}`;
-  const title = `Pixel ${x}, ${y}: rays in the plane of incidence and from above`;
+  const title = say('Pixel {x}, {y}: rays in the plane of incidence and from above', { x, y });
   const image = element('img', { alt: title });
   showImage(lab, image, address);
   const content = element(
@@ -254,7 +257,10 @@ function createAnswer(lab) {
       const note = integratorNote(lab);
       replace(head, summary(tree), note ? notice(note) : cutOff(lab, tree));
       omitted.textContent = overlay.omitted
-        ? `Rays drawn: ${count(overlay.count)}. Rays of lower weight, in the table only: ${count(overlay.omitted)}.`
+        ? say('Rays drawn: {drawn}. Rays of lower weight, in the table only: {omitted}.', {
+            drawn: count(overlay.count),
+            omitted: count(overlay.omitted),
+          })
         : '';
       omitted.hidden = !overlay.omitted;
     },

@@ -4,6 +4,7 @@
  * mark(ray or null)}
  *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: the axes to the right and up */
 
+import { say } from '../shared/language.js';
 import { digits, element, svg, unique } from '../shared/ui.js';
 import { dot, unit } from '../shared/vectors.js';
 import { hull } from '../view/solids.js';
@@ -181,7 +182,7 @@ function axes({ frame, at, window: { left, top, right, bottom: lowest } }, plane
     along,
     up,
     svg('rect', { class: 'ray-frame', ...frame }),
-    text(frame.x + frame.width / 2, HEIGHT - 5, 'middle', `${plane.uName}, scene units`),
+    text(frame.x + frame.width / 2, HEIGHT - 5, 'middle', say('{axis}, scene units', { axis: plane.uName })),
     text(4, frame.y + 4, 'start', plane.vName),
   );
 }

@@ -20,6 +20,7 @@
  *     the part whose projection onto the axes is in the frame
  *   frame: {left, top, right, bottom}; for flatLine v increases from bottom to top */
 
+import { local, say } from '../shared/language.js';
 import { digits } from '../shared/ui.js';
 import { add, dot, length, mean, minus, times } from '../shared/vectors.js';
 
@@ -187,28 +188,28 @@ const degrees = (angle) => `${digits(angle, 4)}°`;
 /* One number if the channels are equal, otherwise three. */
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
 
-const medium = ({ medium: name, n }) => (name === digits(n) ? name : `${name} ${digits(n)}`);
+const medium = ({ medium: name, n }) => (local(name) === digits(n) ? digits(n) : `${name} ${digits(n)}`);
 
 function surface(hit) {
-  return hit.surface_of ? `${hit.solid}: ${hit.surface} of ${hit.surface_of}` : `${hit.solid}: ${hit.surface}`;
+  return hit.surface_of ? say('{solid}: {surface} of {surface_of}', hit) : `${hit.solid}: ${hit.surface}`;
 }
 
 function angles({ opaque, tir, snell }) {
   const incidence = degrees(snell.incidence_deg);
   if (opaque) return incidence;
-  return tir ? `${incidence}, no refraction` : `${incidence} → ${degrees(snell.refraction_deg)}`;
+  return tir ? say('{incidence}, no refraction', { incidence }) : `${incidence} → ${degrees(snell.refraction_deg)}`;
 }
 
 function reflectance(hit) {
-  if (hit.tir) return 'total reflection';
-  if (hit.opaque) return hit.R > 0 ? `${percent(hit.R)}, opaque` : 'opaque';
+  if (hit.tir) return say('total reflection');
+  if (hit.opaque) return hit.R > 0 ? say('{reflectance}, opaque', { reflectance: percent(hit.R) }) : say('opaque');
   return percent(hit.R);
 }
 
 function hitTexts(hit) {
   return {
     surface: surface(hit),
-    media: hit.opaque ? `in ${medium(hit.from)}` : `${medium(hit.from)} → ${medium(hit.to)}`,
+    media: hit.opaque ? say('in {medium}', { medium: medium(hit.from) }) : `${medium(hit.from)} → ${medium(hit.to)}`,
     angles: angles(hit),
     reflectance: reflectance(hit),
     transmitted: hit.opaque || hit.tir ? '' : percent(hit.T),
@@ -221,10 +222,10 @@ function hitTexts(hit) {
 export function describe(ray) {
   const { node } = ray;
   return {
-    kind: node.kind === 'shadow' && node.light ? `to ${node.light}` : kindWords[node.kind],
+    kind: node.kind === 'shadow' && node.light ? say('to {light}', node) : kindWords[node.kind],
     depth: String(node.depth),
     surface: '',
-    media: `in ${medium(node)}`,
+    media: say('in {medium}', { medium: medium(node) }),
     angles: '',
     reflectance: '',
     transmitted: '',

@@ -1,6 +1,7 @@
 /* The screen of the bench: a rectangle that bins the power of the beams, as image and curve.
  * exports: createBenchScreen(lab, bench, changed) -> {node}; sets bench.screen = {corners} while it is shown */
 
+import { say } from '../shared/language.js';
 import { plot } from '../shared/plot.js';
 import { button, checkbox, count, digits, element, facts, notice, number, replace, toByte } from '../shared/ui.js';
 import { add, length, times, unit } from '../shared/vectors.js';
@@ -115,8 +116,8 @@ export function createBenchScreen(lab, bench, changed) {
     replace(
       result,
       facts([
-        ['Rays', `N = ${count(rays)} traced, ${count(hits)} crossings`],
-        ['Power received', `${digits(received, 6)} of ${digits(power, 6)}`],
+        ['Rays', say('N = {rays} traced, {hits} crossings', { rays: count(rays), hits: count(hits) })],
+        ['Power received', say('{part} of {all}', { part: digits(received, 6), all: digits(power, 6) })],
       ]),
       image(answer),
       plot({

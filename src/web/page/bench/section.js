@@ -19,6 +19,7 @@
  *   drawn                                the generation of the outlines and rays that are shown
  *   draw(), ask()                        draws again; requests what is missing */
 
+import { say, translated } from '../shared/language.js';
 import {
   button,
   checkbox,
@@ -29,6 +30,7 @@ import {
   number,
   replace,
   svg,
+  vector,
   write,
 } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
@@ -426,13 +428,8 @@ export function createSection(lab) {
 
   function solidName({ solid, medium, opaque, n }) {
     const place = lab.param(`${solid}.position`)?.value;
-    const at = place
-      ? `, at ${flat(section.plane, place)
-          .slice(0, 2)
-          .map((x) => digits(x, 4))
-          .join(', ')}`
-      : '';
-    return opaque ? `${solid}, opaque${at}` : `${solid}, ${medium}, n = ${digits(n, 5)}${at}`;
+    const at = place ? say(', at {place}', { place: vector(flat(section.plane, place).slice(0, 2), 4) }) : '';
+    return `${solid}, ${opaque ? say('opaque') : `${medium}, n = ${digits(n, 5)}`}${at}`;
   }
 
   /* The strongest hits have their angles if they are switched on; those that were clicked or have the focus, always. */
@@ -484,7 +481,7 @@ function createBar(lab, section, { look, moveTo }) {
     ['snap', 'Snap', 'Move to the grid and turn by 5° (N); Shift does the opposite while dragging'],
   ].map(([name, label, title]) => {
     const part = checkbox(label, section.options[name], (on) => section.set(name, on));
-    part.node.title = title;
+    part.node.title = translated(title);
     return { name, ...part };
   });
   const zoom = (factor) => {

@@ -4,6 +4,7 @@
  * exports: createHand(lab, section, stage) -> {draw(), busy()}
  *   draw: the handles of the selected object and of the beams; busy: whether an object is being dragged */
 
+import { say } from '../shared/language.js';
 import { digits, gesture, gestures, svg } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
 import { flat, placed, turnAbout } from './section_plane.js';
@@ -98,7 +99,9 @@ export function createHand(lab, section, stage) {
     const [u, v, away] = flat(section.plane, placeOf(name));
     const distance = digits(Math.abs(away), 3);
     const inPlane = Math.abs(away) * port.scale <= 1;
-    const label = inPlane ? `Start of ${name}` : `Start of ${name}, ${distance} units away from this plane`;
+    const label = inPlane
+      ? say('Start of {name}', { name })
+      : say('Start of {name}, {distance} units away from this plane', { name, distance });
     return { id: `start ${name}`, name, turns: false, x: port.x(u), y: port.y(v), label };
   }
 
@@ -109,7 +112,7 @@ export function createHand(lab, section, stage) {
     const arm = isBeam(name) ? BEAM_ARM_PX : ARM_PX;
     const [x0, y0] = [port.x(u), port.y(v)];
     const [x, y] = [x0 + arm * Math.cos(angle), y0 - arm * Math.sin(angle)];
-    return { id: `turn ${name}`, name, turns: true, x, y, from: [x0, y0], label: `Turn ${name}` };
+    return { id: `turn ${name}`, name, turns: true, x, y, from: [x0, y0], label: say('Turn {name}', { name }) };
   }
 
   function put({ id, name, turns, x, y, from, label }) {

@@ -104,7 +104,9 @@ export function scaleMarks(port, unitM) {
     svg(
       'text',
       { class: 'section-tick', x: x1, y: y - 9, 'text-anchor': 'end' },
-      length === 1 ? `1 unit = ${inMetres(unitM)}` : `${digits(length)} units = ${inMetres(length * unitM)}`,
+      length === 1
+        ? say('1 unit = {length}', { length: inMetres(unitM) })
+        : say('{units} units = {length}', { units: digits(length), length: inMetres(length * unitM) }),
     ),
   ];
 }
@@ -151,11 +153,11 @@ export function legendMarks(port, areas) {
   const shown = [...rows.values()].slice(0, rows.size > room ? room - 1 : room);
   const lines = shown.map(({ area, names }) => {
     const solids = names.join(', ');
-    if (area.opaque) return [area, `${solids}: opaque`];
+    if (area.opaque) return [area, say('{solids}: opaque', { solids })];
     const medium = `${area.medium}, n = ${digits(area.n, 5)}`;
     return [area, names.length === 1 && area.medium === solids ? medium : `${solids}: ${medium}`];
   });
-  if (rows.size > shown.length) lines.push([null, `and ${rows.size - shown.length} more media`]);
+  if (rows.size > shown.length) lines.push([null, say('and {n} more media', { n: rows.size - shown.length })]);
   if (!lines.length) return [];
   const most = Math.max(16, Math.floor((port.width - 110) / LETTER));
   const texts = lines.map(([area, text]) => [area, shortened(text, Math.min(most, 60))]);

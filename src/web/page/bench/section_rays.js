@@ -10,6 +10,7 @@
  *                                  of labels that exist; none if a label would cover one of them, unless full; bare:
  *                                  only the normal */
 
+import { say } from '../shared/language.js';
 import { digits, svg } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
 import { isCut, flatLine } from './ray_tree.js';
@@ -123,13 +124,13 @@ const degrees = (angle) => `${digits(angle, 4)}°`;
 const tenths = (angle) => `${digits(Math.round(10 * angle) / 10, 4)}°`;
 
 export function hitName({ hit, segment }) {
-  const at = `${segment.beam} meets ${hit.solid}`;
   const incidence = degrees(hit.snell.incidence_deg);
-  if (hit.opaque) return `${at}: angle of incidence ${incidence}, reflected or absorbed`;
-  const media = `n₁ = ${digits(hit.from.n, 5)}, n₂ = ${digits(hit.to.n, 5)}`;
+  const about = { beam: segment.beam, solid: hit.solid, incidence, refraction: degrees(hit.snell.refraction_deg) };
+  if (hit.opaque) return say('{beam} meets {solid}: angle of incidence {incidence}, reflected or absorbed', about);
+  about.media = `n₁ = ${digits(hit.from.n, 5)}, n₂ = ${digits(hit.to.n, 5)}`;
   return hit.tir
-    ? `${at}: angle of incidence ${incidence}, total reflection, ${media}`
-    : `${at}: angle of incidence ${incidence}, of refraction ${degrees(hit.snell.refraction_deg)}, ${media}`;
+    ? say('{beam} meets {solid}: angle of incidence {incidence}, total reflection, {media}', about)
+    : say('{beam} meets {solid}: angle of incidence {incidence}, of refraction {refraction}, {media}', about);
 }
 
 /* --- normal, arcs and labels --- */
@@ -207,7 +208,7 @@ export function hitMarks(port, plane, mark, options) {
         options,
       ),
     );
-  else if (hit.tir) marks.push(...label(mark, inside, 30, 'total reflection', 'refraction', options));
+  else if (hit.tir) marks.push(...label(mark, inside, 30, say('total reflection'), 'refraction', options));
   if (full && !hit.opaque) marks.push(...indices(mark, normal, incoming, options));
   /* Arcs without a number say nothing. */
   const complete = full || room.length - before === (onwards || hit.tir ? 2 : 1);

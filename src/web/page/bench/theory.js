@@ -1,6 +1,7 @@
 /* Optics measured in the scene next to closed-form theory: a table of metrics, and curves.
  * exports: createBenchTheory(lab) -> {node} */
 
+import { say } from '../shared/language.js';
 import { saveReply } from '../shared/save_file.js';
 import { theoryChart, pretty } from '../shared/theory_chart.js';
 import { button, choice, digits, element, notice, replace, table } from '../shared/ui.js';
@@ -11,7 +12,12 @@ const WORDS = { pass: 'passes:', FAIL: 'fails:' };
 const nameOf = ({ verdict, metric, unit, what, tolerance }) =>
   element(
     'span',
-    { title: `${what}${unit ? `, ${unit}` : ''}; tolerance ${digits(tolerance, 2)}` },
+    {
+      title: say('{what}; tolerance {tolerance}', {
+        what: [what, unit].filter(Boolean).join(', '),
+        tolerance: digits(tolerance, 2),
+      }),
+    },
     element('span', { class: `verdict ${verdict}`, role: 'img', 'aria-label': WORDS[verdict], text: MARKS[verdict] }),
     ` ${metric}`,
   );
@@ -20,9 +26,9 @@ function metrics({ values, defined, passed }) {
   const known = values.filter(({ verdict }) => verdict !== 'none');
   const missing = values.length - known.length;
   return [
-    notice(`${passed} of ${defined} pass`, {
+    notice(say('{passed} of {defined} pass', { passed, defined }), {
       kind: passed === defined ? 'good' : 'warning',
-      remedy: missing ? `${missing} more need other solids.` : null,
+      remedy: missing ? say('{n} more need other solids.', { n: missing }) : null,
     }),
     table({
       caption: 'Metrics: measured by rays of the program, and theory',
