@@ -18,6 +18,7 @@
  *     with(gesture)                     the names to send with a change of that gesture
  *     onchange(f) */
 
+import { say } from '../shared/language.js';
 import { memory } from '../shared/ui.js';
 import { add, minus } from '../shared/vectors.js';
 
@@ -84,7 +85,7 @@ export function createChoice(lab) {
     try {
       const reply = await promise;
       choose(reply.name, reply.generation);
-      lab.say(`${reply.name} added.`);
+      lab.say(say('{name} added.', reply));
       return true;
     } catch (error) {
       lab.fail(error);
@@ -117,7 +118,7 @@ export function createChoice(lab) {
     const { name } = choice;
     if (!name || !(await succeeds(lab.del(`/api/objects/${encodeURIComponent(name)}`)))) return false;
     choose('');
-    lab.say(`${name} removed. Undo restores it.`);
+    lab.say(say('{name} removed. Undo restores it.', { name }));
     return true;
   }
 }

@@ -6,6 +6,7 @@
  *                                                 scene's own materials
  *   presetValues(word) -> {ROW: VALUE}            for POST /api/objects */
 
+import { say } from '../shared/language.js';
 import { button, choice as choiceOf, element, empty, group, replace, text } from '../shared/ui.js';
 import { hintOf } from './object_list.js';
 import { createPads } from './object_pads.js';
@@ -42,7 +43,7 @@ export function presetChoices(lab) {
   return [
     ['', 'Paint'],
     ...Object.entries(MEDIA).map(([word, { label }]) => [word, label]),
-    ...materials.map(({ name }) => [OF_SCENE + name, `Material ${name}`]),
+    ...materials.map(({ name }) => [OF_SCENE + name, say('Material {name}', { name })]),
   ];
 }
 
@@ -136,7 +137,7 @@ export function createDetails(lab, choice, files) {
     return element(
       'div',
       { class: 'object-head' },
-      element('h2', { text: object.name }),
+      element('h2', { translate: 'no', text: object.name }),
       element('span', { class: 'hint', text: [object.kind, hintOf(object)].filter(Boolean).join(', ') }),
       element(
         'span',
@@ -156,7 +157,7 @@ export function createDetails(lab, choice, files) {
       'div',
       { class: 'buttons object-pager', role: 'group', 'aria-label': 'Lights' },
       button('Previous light', () => to(-1), { icon: 'earlier', small: true, disabled: single }),
-      element('span', { class: 'hint', text: `${here + 1} of ${lights.length}` }),
+      element('span', { class: 'hint', text: say('{part} of {all}', { part: here + 1, all: lights.length }) }),
       button('Next light', () => to(1), { icon: 'later', small: true, disabled: single }),
       button('Add light', () => choice.add({ kind: 'light' }), { icon: 'plus', small: true }),
     );
@@ -206,7 +207,11 @@ export function createDetails(lab, choice, files) {
             'div',
             { class: 'buttons' },
             parts.map((part) =>
-              button(`Go to ${part}`, () => choice.choose(part), { icon: 'later', small: true, kind: 'quiet' }),
+              button(say('Go to {name}', { name: part }), () => choice.choose(part), {
+                icon: 'later',
+                small: true,
+                kind: 'quiet',
+              }),
             ),
           )
         : null,
@@ -230,7 +235,7 @@ export function createDetails(lab, choice, files) {
         rows.push(...controls);
         const note =
           kind === 'material' && object.kind === 'solid' && object.material
-            ? `of ${object.material}; values set here apply to ${object.name} only`
+            ? say('of {material}; values set here apply to {name} only', object)
             : null;
         return group(
           GROUPS[kind] || kind,

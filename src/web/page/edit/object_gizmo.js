@@ -3,6 +3,7 @@
  * keys change the object. Shift while dragging, or the switch Snap, rounds to the steps of the panel Objects.
  * exports: createGizmo(lab, choice, mark, movable(object)) -> {show(), hide(), key(event), snaps, inSteps(vector)} */
 
+import { say } from '../shared/language.js';
 import { checkbox, choice as choiceOf, element, gesture, gestures, memory, svg } from '../shared/ui.js';
 import { add, dot, minus, times, unit } from '../shared/vectors.js';
 import { unitsPerPixel } from '../view/camera_moves.js';
@@ -30,9 +31,9 @@ export function createGizmo(lab, choice, mark, movable) {
   const modes = choiceOf({ label: 'Handles', choices: MODES, value: mode, radios: true, onchange: setMode });
   const snap = checkbox('Snap', snaps, setSnap);
   const along = checkbox('With contents', choice.group.on, (on) => choice.group.set(on));
-  snap.node.title = 'Round to the steps of the panel Objects (N); Shift does the opposite while dragging a handle';
-  along.node.title = 'Objects inside move with the object, such as the liquid and the rod of a vessel';
-  modes.group.title = 'Handles of the selected object (G)';
+  snap.node.title = say('Round to the steps of the panel Objects (N); Shift does the opposite while dragging a handle');
+  along.node.title = say('Objects inside move with the object, such as the liquid and the rod of a vessel');
+  modes.group.title = say('Handles of the selected object (G)');
   const options = element('div', { class: 'gizmo-options' }, modes.group, snap.node, along.node);
   options.addEventListener('pointerdown', (event) => event.stopPropagation());
 
@@ -131,7 +132,9 @@ export function createGizmo(lab, choice, mark, movable) {
     node.style.left = `${at.x}px`;
     node.style.top = `${at.y}px`;
     node.setAttribute('aria-label', handle.label);
-    node.title = `${handle.label}: drag, or use the arrow keys; Shift ${snaps ? 'frees' : 'snaps'}`;
+    node.title = snaps
+      ? say('{label}: drag, or use the arrow keys; Shift frees', handle)
+      : say('{label}: drag, or use the arrow keys; Shift snaps', handle);
   }
 
   function create(name) {
@@ -296,11 +299,11 @@ function handlesOf(lab, place, mode) {
   const { right, up } = lab.state.camera;
   if (!lab.view.project(place)) return [];
   if (mode === 'scale')
-    return [{ name: 'all', axis: -1, at: add(place, times(add(right, up), arm * Math.SQRT1_2)), label: 'Scale' }];
+    return [{ name: 'all', axis: -1, at: add(place, times(add(right, up), arm * Math.SQRT1_2)), label: say('Scale') }];
   const handles = AXES.map((name, axis) =>
     mode === 'turn'
-      ? { name, axis, at: onRing(lab, place, axis, arm), label: `Turn about ${name}` }
-      : { name, axis, at: add(place, times(directions[axis], arm)), label: `Move along ${name}` },
+      ? { name, axis, at: onRing(lab, place, axis, arm), label: say('Turn about {axis}', { axis: name }) }
+      : { name, axis, at: add(place, times(directions[axis], arm)), label: say('Move along {axis}', { axis: name }) },
   );
   return handles.filter((each) => mode === 'turn' || isLong(lab, place, each.at));
 }

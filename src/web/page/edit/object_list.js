@@ -1,6 +1,7 @@
 /* The list of all objects of the scene, by kind, with a field to find them by name when there are many. exports:
  * createList(lab, choice) -> {node}; hintOf(object): a solid's shape and material, a light's kind */
 
+import { say } from '../shared/language.js';
 import { createLongList } from '../shared/long_list.js';
 import { element, empty, replace } from '../shared/ui.js';
 
@@ -18,7 +19,7 @@ const KINDS = [
 
 export function hintOf(object) {
   if (object.kind === 'solid')
-    return [object.shape, object.material && `of ${object.material}`].filter(Boolean).join(' ');
+    return [object.shape, object.material && say('of {material}', object)].filter(Boolean).join(' ');
   return object.kind === 'light' ? object.light : '';
 }
 
@@ -107,7 +108,7 @@ export function createList(lab, choice) {
         'aria-pressed': String(object.name === choice.name),
         onclick: () => choice.choose(choice.name === object.name ? '' : object.name),
       },
-      element('span', { class: 'object-name', text: object.name }),
+      element('span', { class: 'object-name', translate: 'no', text: object.name }),
       ' ',
       element('span', { class: 'object-hint', text: hintOf(object) }),
     );

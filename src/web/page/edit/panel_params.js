@@ -2,6 +2,7 @@
  * parameters by object, and a search.
  * exports: panel */
 
+import { say } from '../shared/language.js';
 import { createLongList } from '../shared/long_list.js';
 import { button, checkbox, element, empty, group, icon, memory, replace } from '../shared/ui.js';
 import { hintOf } from './object_list.js';
@@ -156,7 +157,7 @@ export const panel = {
                 'p',
                 { class: 'about-path' },
                 element('code', { text: row.path }),
-                element('span', { text: `default ${valueText(row.default)}` }),
+                element('span', { text: say('default {value}', { value: valueText(row.default) }) }),
               ),
               element('p', { text: row.meaning }),
               element('p', { class: 'about-range', text: [row.range, row.unit].filter(Boolean).join(', ') }),
@@ -242,7 +243,7 @@ export const panel = {
       if (!object) return '';
       return [
         object.kind === 'solid' ? object.shape || 'solid' : object.kind,
-        object.material ? `of ${object.material}` : '',
+        object.material ? say('of {material}', object) : '',
       ]
         .filter(Boolean)
         .join(' ');
@@ -293,7 +294,7 @@ export const panel = {
               ...own.filter((row) => row.group === kind).map((row) => make(name, row)),
             ])
             .filter(Boolean),
-          button(`Reset ${name}`, () => resetGroup(name), {
+          button(say('Reset {name}', { name }), () => resetGroup(name), {
             icon: 'reset',
             small: true,
             kind: 'quiet',
@@ -318,7 +319,7 @@ export const panel = {
 
     function mark(node, groups) {
       const many = changedRows(node.dataset.object, groups).length;
-      node.querySelector('.changed-count').textContent = many ? `${many} changed` : '';
+      node.querySelector('.changed-count').textContent = many ? say('{n} changed', { n: many }) : '';
       const reset = node.querySelector('.param-reset-group');
       if (reset) reset.hidden = !many;
     }
@@ -353,13 +354,16 @@ export const panel = {
       list.hidden = true;
       results.hidden = false;
       const found = Math.min(FOUND_MAX, best.length);
-      countLabel.textContent = `${best.count} found`;
+      countLabel.textContent = say('{n} found', { n: best.count });
       replace(
         results,
         best.length
           ? element('p', {
               class: 'hint',
-              text: best.count > found ? `${found} of ${best.count} found` : `${best.count} found`,
+              text:
+                best.count > found
+                  ? say('{shown} of {n} found', { shown: found, n: best.count })
+                  : say('{n} found', { n: best.count }),
             })
           : empty('No parameter matches in name or description.'),
         best.slice(0, FOUND_MAX).map((row) => make('found', row, true)),

@@ -2,7 +2,8 @@
  * tool Grab is in slime_grab.js.
  * exports: panel */
 
-import { button, choice, digits, element, empty, group, notice, replace } from '../shared/ui.js';
+import { say } from '../shared/language.js';
+import { button, choice, digits, element, empty, group, notice, replace, write } from '../shared/ui.js';
 import { createGrab } from './slime_grab.js';
 import { createCurve, createMotion } from './slime_motion.js';
 import { createSliders } from './slime_sliders.js';
@@ -71,7 +72,7 @@ function controls(lab) {
       off.disabled = !slime.on;
       preview.set(slime.preview);
       const words = stateText(slime);
-      if (state.textContent !== words) state.textContent = words;
+      write(state, { textContent: words });
     },
   };
 }
@@ -209,7 +210,10 @@ export const panel = {
         replace(
           trouble,
           slime.trouble
-            ? notice(slime.trouble.error, { kind: 'error', remedy: `${slime.trouble.remedy}; or restart the slime` })
+            ? notice(slime.trouble.error, {
+                kind: 'error',
+                remedy: say('{remedy}; or restart the slime', slime.trouble),
+              })
             : null,
         );
       shownWords = words;

@@ -192,7 +192,10 @@ const hex = (value, bright) =>
 function colour(row, context) {
   let bright = 1;
   let mine = null;
-  const picker = element('input', { type: 'color', ...attributes(context, `${context.name}, colour`) });
+  const picker = element('input', {
+    type: 'color',
+    ...attributes(context, say('{label}, colour', { label: context.name })),
+  });
   const three = parts(row, context, CHANNELS, (label, send) => {
     const part = numberBox(context, say('{label}, linear', { label }), send);
     return {
@@ -265,7 +268,7 @@ function words(row, context) {
   const input = element(
     'select',
     { class: 'input select', ...attributes(context) },
-    row.choices.map((word) => element('option', { value: word, text: word })),
+    row.choices.map((word) => element('option', { value: word, translate: 'no', text: word })),
   );
   input.addEventListener('change', () => context.send(integer ? Number(input.value) : input.value, gesture('choice')));
   return {
@@ -321,7 +324,9 @@ function coating(row, context) {
   const select = element(
     'select',
     { class: 'input select', ...attributes(context) },
-    ['none', ...row.designs, own].map((word) => element('option', { value: word, text: word })),
+    ['none', ...row.designs, own].map((word) =>
+      element('option', { value: word, translate: word === own ? null : 'no', text: word }),
+    ),
   );
   const box = text(row, { ...context, name: say('{label}, layers', { label: context.name }), names: [] });
   let last = 'none';

@@ -8,6 +8,7 @@
  *   hasLaw(lab, object)               whether the object's medium has coefficients
  *   whyUnused(lab, object, name)      why that parameter has no effect now; '' if it has an effect */
 
+import { say, translated } from '../shared/language.js';
 import { button, element, unique } from '../shared/ui.js';
 import { controlOf, written } from './param_controls.js';
 
@@ -24,9 +25,9 @@ export function whyUnused(lab, object, name) {
   const medium = value(lab, object, 'medium');
   if (!medium) return '';
   if (name === 'ior' && medium !== 'ior')
-    return `the index comes from the medium ${medium}; a value set here replaces it`;
+    return say('the index comes from the medium {medium}; a value set here replaces it', { medium });
   if (name === 'coefficients' && value(lab, object, name).length && !hasLaw(lab, object))
-    return `the medium ${medium} uses no coefficients`;
+    return say('the medium {medium} uses no coefficients', { medium });
   return '';
 }
 
@@ -57,7 +58,7 @@ function suggested(lab, kind) {
 const NAMES_MAX = 200;
 const FORGET_MS = 8000;
 
-const labelOf = (name) => name.replaceAll('_', ' ');
+const labelOf = (name) => translated(name.replaceAll('_', ' '));
 const equal = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 /* 'u' for scene units; exponents as superscripts. */
@@ -78,20 +79,34 @@ export function valueText(value) {
 export function createRow(first, lab, { onabout, long } = {}) {
   const { path } = first;
   const object = path.slice(0, path.length - first.name.length - 1);
-  const needs = first.needs ? `; needs ${first.needs}` : '';
+  const about = {
+    meaning: translated(first.meaning),
+    range: translated(first.range),
+    value: valueText(first.default),
+    needs: first.needs,
+  };
   const meaning = element('span', {
     class: 'param-meaning',
     id: unique('meaning'),
-    text: `${first.meaning}. ${first.range}; default ${valueText(first.default)}${needs}`,
+    text: first.needs
+      ? say('{meaning}. {range}; default {value}; needs {needs}', about)
+      : say('{meaning}. {range}; default {value}', about),
   });
   const problem = element('p', { class: 'param-problem', role: 'alert', hidden: true });
   const unused = element('span', { class: 'param-unused', text: 'unused', hidden: true });
   const title = () =>
-    [long ? element('span', { class: 'param-object', text: object }) : null, labelOf(first.name), unused].filter(
-      Boolean,
-    );
+    [
+      long ? element('span', { class: 'param-object', translate: 'no', text: object }) : null,
+      labelOf(first.name),
+      unused,
+    ].filter(Boolean);
   const label = element('label', { class: 'param-label', title: path }, title());
-  const reset = button(`Reset ${path}`, undo, { icon: 'reset', bare: true, small: true, kind: 'quiet' });
+  const reset = button(say('Reset {name}', { name: path }), undo, {
+    icon: 'reset',
+    bare: true,
+    small: true,
+    kind: 'quiet',
+  });
   let known = first;
   let waiting = 0;
   let settled = 0;
@@ -142,7 +157,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     const away = known.initial !== undefined && known.initial !== null && !equal(known.value, known.initial);
     reset.classList.toggle('unseen', !away);
     reset.disabled = !away;
-    reset.title = away ? `Reset to ${valueText(known.initial)}` : '';
+    reset.title = away ? say('Reset to {value}', { value: valueText(known.initial) }) : '';
     node.classList.toggle('changed', away);
   }
 

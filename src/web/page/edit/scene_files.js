@@ -3,6 +3,7 @@
  * 'data', title), pick(title, kind, nothing, actions) -> promise of a name or null, forObject(object) -> node or null}
  *   nothing: the text if the folder has no such files */
 
+import { say } from '../shared/language.js';
 import { thumbnail } from '../shared/images.js';
 import { saveReply } from '../shared/save_file.js';
 import { ask, button, dialog, element, empty, notice, replace, unique } from '../shared/ui.js';
@@ -42,7 +43,7 @@ export function createFiles(lab, choice) {
     const content = element(
       'div',
       { class: 'file-choice' },
-      element('p', { class: 'hint', text: inFolder ? `Folder ${folder}` : 'Files of this page' }),
+      element('p', { class: 'hint', text: inFolder ? say('Folder {folder}', { folder }) : 'Files of this page' }),
       names.length > MANY ? element('label', { class: 'visually-hidden', for: search.id, text: 'Find a file' }) : null,
       names.length > MANY ? search : null,
       names.length ? list : empty(nothing),
@@ -84,8 +85,8 @@ export function createFiles(lab, choice) {
   function named(name) {
     const at = name.lastIndexOf('/') + 1;
     return [
-      element('span', { class: 'object-hint', text: name.slice(0, at) }),
-      element('span', { class: 'object-name', text: name.slice(at) }),
+      element('span', { class: 'object-hint', translate: 'no', text: name.slice(0, at) }),
+      element('span', { class: 'object-name', translate: 'no', text: name.slice(at) }),
     ];
   }
 
@@ -93,12 +94,13 @@ export function createFiles(lab, choice) {
    * laboratory runs. */
   async function mayLeave() {
     if (!lab.state || lab.state.saved) return true;
+    const about = { name: lab.state.file || say('This scene') };
     const answer = await dialog({
       title: 'Unsaved changes',
       content: element('p', {
-        text:
-          `${lab.state.file || 'This scene'} has unsaved changes. Undo restores them ` +
-          `only while ${inFolder ? 'the laboratory runs' : 'this page is open'}.`,
+        text: inFolder
+          ? say('{name} has unsaved changes. Undo restores them only while the laboratory runs.', about)
+          : say('{name} has unsaved changes. Undo restores them only while this page is open.', about),
       }),
       actions: [
         ['Cancel', null],
@@ -114,7 +116,7 @@ export function createFiles(lab, choice) {
       const { note } = await lab.change('/api/open', body);
       ours.delete(body.file);
       choice.choose('');
-      lab.say(body.file ? `${body.file} opened.` : 'New scene opened.', note);
+      lab.say(body.file ? say('{file} opened.', body) : 'New scene opened.', note);
     } catch (error) {
       lab.fail(error);
     }
@@ -138,7 +140,9 @@ export function createFiles(lab, choice) {
       ? 'replace'
       : await dialog({
           title: 'Replace the file',
-          content: element('p', { text: `Replace ${file}? The file is rewritten and its comments are lost.` }),
+          content: element('p', {
+            text: say('Replace {file}? The file is rewritten and its comments are lost.', { file }),
+          }),
           actions: [
             ['Cancel', null],
             ['Save as …', 'as'],
@@ -153,14 +157,18 @@ export function createFiles(lab, choice) {
     try {
       await lab.change('/api/save', replaces ? { file, replace: true } : { file });
       ours.add(file);
-      if (inFolder) lab.say(`${file} saved.`);
+      if (inFolder) lab.say(say('{name} saved.', { name: file }));
       else await saveReply(lab, '/api/scene.yaml', file.split('/').pop());
       return true;
     } catch (error) {
       if (error.status !== 409) return Boolean(await failed(error));
       return (
-        (await ask('Replace the file', `The file ${file} already exists. Replace it?`, 'Replace', 'danger')) &&
-        write(file, true, failed)
+        (await ask(
+          'Replace the file',
+          say('The file {file} already exists. Replace it?', { file }),
+          'Replace',
+          'danger',
+        )) && write(file, true, failed)
       );
     }
   }
@@ -223,7 +231,7 @@ export function createFiles(lab, choice) {
     if (name === null) return;
     try {
       await lab.set(name ? { [path]: await asPath(name) } : none());
-      lab.say(`${path} is ${name || 'none'}.`);
+      lab.say(say('{path} is {value}.', { path, value: name || say('none') }));
     } catch (error) {
       lab.fail(error);
     }
@@ -258,7 +266,7 @@ export function createFiles(lab, choice) {
     const field = element(
       'div',
       { class: 'field wide' },
-      element('label', { for: input.id, text: `Glass of ${file.split('/').pop()}` }),
+      element('label', { for: input.id, text: say('Glass of {file}', { file: file.split('/').pop() }) }),
       element('span', { class: 'field-control' }, input),
     );
     const made = dialog({

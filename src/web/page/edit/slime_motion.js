@@ -3,6 +3,7 @@
  *   createCurve() -> {node, add(slime), clear()}     the volume relative to that at rest, over the last seconds
  *   createMotion(lab) -> {node}                      what `cuvette motion` prints */
 
+import { say } from '../shared/language.js';
 import { button, digits, download, element, notice, replace, svg, table } from '../shared/ui.js';
 
 const WIDTH = 320;
@@ -32,7 +33,10 @@ export function createCurve() {
     'figure',
     { class: 'slime-figure' },
     drawing,
-    element('figcaption', { class: 'hint', text: `Volume in % of the volume at rest (dashed), last ${LONG_S} s` }),
+    element('figcaption', {
+      class: 'hint',
+      text: say('Volume in % of the volume at rest (dashed), last {time} s', { time: LONG_S }),
+    }),
   );
   let points = [];
   let frame = 0;
@@ -75,15 +79,22 @@ export function createCurve() {
     drawing.setAttribute(
       'aria-label',
       points.length
-        ? `Volume ${digits(100 * points[points.length - 1].fraction, 4)} % of the volume at rest`
-        : 'Volume: no motion yet',
+        ? say('Volume {percent} % of the volume at rest', {
+            percent: digits(100 * points[points.length - 1].fraction, 4),
+          })
+        : say('Volume: no motion yet'),
     );
   }
 }
 
 function shown({ name, level, integrator, dt_s: step, values }) {
   return table({
-    caption: `${name}: level ${level}, ${integrator}, steps of ${digits(step)} s`,
+    caption: say('{name}: level {level}, {integrator}, steps of {step} s', {
+      name,
+      level,
+      integrator,
+      step: digits(step),
+    }),
     columns: [
       'Property',
       { label: 'Measured', numeric: true },

@@ -2,6 +2,7 @@
  * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that
  * shows the slime and of its mesh */
 
+import { translated } from '../shared/language.js';
 import { element, gesture, slider, toByte, toLinear, unique } from '../shared/ui.js';
 import { shortUnit } from './param_row.js';
 
@@ -91,11 +92,11 @@ function tint(lab, path) {
 
 function channels(lab, path, entry) {
   const three = CHANNELS.map(([name, at]) => {
-    const one = create(lab, path, entry, `${entry.heading}, ${name}`, at);
+    const one = create(lab, path, entry, `${translated(entry.heading)}, ${translated(name)}`, at);
     one.node
       .querySelector('label')
       .replaceChildren(element('span', { class: `channel channel-${name}`, 'aria-hidden': 'true' }), name);
-    one.node.querySelector('.range').setAttribute('aria-label', `${entry.heading}, ${name}`);
+    one.node.querySelector('.range').setAttribute('aria-label', `${translated(entry.heading)}, ${translated(name)}`);
     return one;
   });
   const all = entry.tint ? [tint(lab, path), ...three] : three;
