@@ -4,6 +4,7 @@
  *   text: PATH=1,2,3 or PATH=FROM..TO:COUNT, as of `cuvette study new --axis`; null, with the problem shown, for an
  *   incomplete axis */
 
+import { say, translated } from '../shared/language.js';
 import { createParamPicker } from '../edit/param_picker.js';
 import { valueText } from '../edit/param_row.js';
 import { numberInput, numberOf } from '../shared/controls.js';
@@ -98,9 +99,9 @@ export function createAxis(lab, { onchange, onremove }) {
   const axis = {
     node,
     name(number) {
-      title.textContent = `Axis ${number}`;
+      title.textContent = say('Axis {number}', { number });
       node.setAttribute('aria-label', title.textContent);
-      remove.querySelector('span').textContent = remove.title = `Remove axis ${number}`;
+      remove.querySelector('span').textContent = remove.title = say('Remove axis {number}', { number });
     },
     removable(yes) {
       remove.hidden = !yes;
@@ -123,7 +124,11 @@ export function createAxis(lab, { onchange, onremove }) {
     list.hidden = isRange();
     range.node.hidden = !isRange();
     about.textContent = row
-      ? [`${row.meaning}.`, `${row.range}${row.unit ? `, ${row.unit}` : ''};`, `now ${valueText(row.value)}`].join(' ')
+      ? say('{meaning}. {range}; now {value}', {
+          meaning: translated(row.meaning),
+          range: [row.range, row.unit].filter(Boolean).map(translated).join(', '),
+          value: valueText(row.value),
+        })
       : '';
   }
 

@@ -2,6 +2,7 @@
  * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note}),
  * chosen(): {quantity, x, by, logX, logY} of the chart; null: none, or automatic} */
 
+import { say, translated } from '../shared/language.js';
 import { plot } from '../shared/plot.js';
 import { checkbox, choice, digits, element, empty, group, replace, table, timeUnit } from '../shared/ui.js';
 import { axesFor, seriesOf } from './data.js';
@@ -136,8 +137,9 @@ export function createChart({ caption, id }) {
       }),
       element('figcaption', {
         class: 'hint',
-        text: [what.note, few, omitted ? `${omitted} more lines are not drawn; see the summary.` : '']
+        text: [what.note, few, omitted ? say('{n} more lines are not drawn; see the summary.', { n: omitted }) : '']
           .filter(Boolean)
+          .map(translated)
           .join(' '),
       }),
     );

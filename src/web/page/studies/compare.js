@@ -2,6 +2,7 @@
  * summary.
  * exports: createCompare(lab) -> {node, show(study, details, results)} */
 
+import { say, translated } from '../shared/language.js';
 import { choice, count, digits, element, empty, notice, replace, timeUnit } from '../shared/ui.js';
 import { createChart } from './chart.js';
 import { pathsOf } from './data.js';
@@ -49,11 +50,11 @@ function subjectsOf(study, details, results) {
     });
   if (!details.summary) return subjects;
   const command = `cuvette study run --processes=8 ${study.file}`;
-  const advice = `For a verdict, measure A and B in turn in fresh processes: ${command}.`;
+  const advice = say('For a verdict, measure A and B in turn in fresh processes: {command}.', { command });
   for (const { path, paths, values } of axesOf(study, details.summary))
     subjects.push({
       key: `value ${path}`,
-      label: `Values of ${path}`,
+      label: say('Values of {path}', { path }),
       a: values.map((value) => [value, value]),
       query: (a, b) => ({ a: `${path}=${a}`, b: `${path}=${b}` }),
       paths: all.filter((one) => !paths.includes(one.path)),
@@ -138,7 +139,8 @@ export function createCompare(lab) {
     try {
       const address = `/api/studies/${encodeURIComponent(of.name)}/compare?${new URLSearchParams(subject.query(a, b))}`;
       const answer = await lab.get(address);
-      if (number === asked) contrast.show({ ...subject, answer, title: `${of.title}: B is ${b}, A is ${a}` });
+      if (number === asked)
+        contrast.show({ ...subject, answer, title: say('{title}: B is {b}, A is {a}', { title: of.title, a, b }) });
     } catch (error) {
       if (number === asked) contrast.clear(notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
@@ -187,15 +189,29 @@ function rowsOf(answer, paths, runs) {
 
 function wordsOf({ cells, all }, both, runs) {
   const { ratio, low, high, verdict, reason } = all;
-  const interval = low === null ? '' : ` (95% interval ${digits(low, 3)} to ${digits(high, 3)})`;
   const many = cells.length > 1;
+  const about = {
+    measured: both.length,
+    all: cells.length,
+    ratio: digits(ratio, 3),
+    low: digits(low, 3),
+    high: digits(high, 3),
+    verdict: translated(verdict),
+    reason: translated(reason),
+  };
   const measured = runs
-    ? `${both.length} of ${cells.length} cells were measured in both runs; `
-    : `${both.length} of ${cells.length} pairs of cells were measured; `;
-  return (
-    `${many ? measured : ''}B takes ${digits(ratio, 3)} times as long as A${many ? ' in the geometric mean' : ''}` +
-    `${interval}. Verdict: ${verdict}${reason ? `, because ${reason}` : ''}.`
-  );
+    ? say('{measured} of {all} cells were measured in both runs.', about)
+    : say('{measured} of {all} pairs of cells were measured.', about);
+  return [
+    many && measured,
+    many
+      ? say('B takes {ratio} times as long as A in the geometric mean.', about)
+      : say('B takes {ratio} times as long as A.', about),
+    low !== null && say('95% interval: {low} to {high}.', about),
+    reason ? say('Verdict: {verdict}, because {reason}.', about) : say('Verdict: {verdict}.', about),
+  ]
+    .filter(Boolean)
+    .join(' ');
 }
 
 function verdict({ answer, runs, advice }) {
@@ -208,10 +224,12 @@ function verdict({ answer, runs, advice }) {
     element('p', { text: wordsOf(answer, both, runs) }),
     all.alternate ? null : element('p', { class: 'hint', text: advice }),
     all.pairs_needed
-      ? element('p', { text: `${count(all.pairs_needed)} processes of each side, in turn, find a difference of 3%.` })
+      ? element('p', {
+          text: say('{n} processes of each side, in turn, find a difference of 3%.', { n: count(all.pairs_needed) }),
+        })
       : null,
     others
-      ? notice(`${others} ${others === 1 ? 'cell has' : 'cells have'} different films: the rendered images differ.`, {
+      ? notice(say('{n} cells have different films: the rendered images differ.', { n: others }), {
           kind: 'warning',
         })
       : null,

@@ -1,6 +1,7 @@
 /* The details of one study: definition, progress, chart, tables and other runs. exports: createDetails(lab, {onrun,
  * onstop}) -> {node, show(study, details, results), progress(now), grew(ended)}; now: the study of the state */
 
+import { say, translated } from '../shared/language.js';
 import { saveReply } from '../shared/save_file.js';
 import { button, checkbox, count, element, empty, facts, group, notice, replace, seconds } from '../shared/ui.js';
 import { createChart } from './chart.js';
@@ -22,15 +23,24 @@ const stages = { measuring: 'measuring', moving: 'simulating the slime', images:
 
 function axisWords({ name, paths, units, count: points }) {
   const list = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
-  return `${paths.length === 1 && paths[0] === name ? list : `${name} (${list})`}: ${points} values`;
+  return say('{axis}: {n} values', {
+    axis: paths.length === 1 && paths[0] === name ? list : `${name} (${list})`,
+    n: points,
+  });
 }
 
 /* The number of disturbed rows, which are kept and used. */
 const warnings = ({ disturbed, rows, warmups }) =>
   disturbed
     ? notice(
-        `${count(disturbed)} of ${count(rows - warmups)} rows were measured while other programs ran, or with a ` +
-          `lower frequency of the processor.`,
+        say(
+          '{disturbed} of {rows} rows were measured while other programs ran, ' +
+            'or with a lower frequency of the processor.',
+          {
+            disturbed: count(disturbed),
+            rows: count(rows - warmups),
+          },
+        ),
         {
           kind: 'warning',
           remedy: 'Their times may be too long: close other programs, and measure again into another results folder.',
@@ -52,11 +62,14 @@ const about = (study, details, results) =>
             )
           : 'none',
       ],
-      ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
-      ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
+      ['Cells', say('{done} of {all} done', { done: count(details.cells_done), all: count(details.cells) })],
+      [
+        'Rows',
+        say('{rows}, of which {warmups} warm-ups', { rows: count(details.rows), warmups: count(details.warmups) }),
+      ],
       results && details.rows ? ['Results', element('code', { text: `${results}/${study.name}` })] : null,
       details.marked
-        ? ['Marked', `${count(details.marked)} rows with another film than the first row of their cell`]
+        ? ['Marked', say('{n} rows with another film than the first row of their cell', { n: count(details.marked) })]
         : null,
     ].filter(Boolean),
   );
@@ -80,11 +93,13 @@ function createProgress() {
       bar.value = done;
       words.textContent = [
         now.images
-          ? `image ${now.image} of ${now.images}`
-          : `${count(now.frames_done)} of ${count(now.frames_all)} frames`,
+          ? say('image {image} of {images}', now)
+          : say('{done} of {all} frames', { done: count(now.frames_done), all: count(now.frames_all) }),
         `${Math.floor(100 * done)} %`,
-        now.images || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
-        `cell ${now.cell}: ${stages[now.stage] || now.stage}`,
+        now.images || now.left_s === null
+          ? null
+          : say('about {time} left', { time: seconds(Math.max(1, Math.round(now.left_s))) }),
+        say('cell {cell}: {stage}', { cell: now.cell, stage: translated(stages[now.stage] || now.stage) }),
       ]
         .filter(Boolean)
         .join(' · ');
@@ -205,10 +220,10 @@ export function createDetails(lab, { onrun, onstop }) {
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
     const next = !complete ? (details.rows ? 'continue' : 'start') : details.lacks_files ? 'files' : 'complete';
-    start.querySelector('.button-label').textContent = STARTS[next][0];
+    start.querySelector('.button-label').textContent = translated(STARTS[next][0]);
     start.classList.toggle('primary', !complete);
     start.disabled = next === 'complete' || Boolean(other) || (Boolean(details.error) && details.cells === undefined);
-    start.title = other ? `the study ${other} is running` : STARTS[next][1];
+    start.title = other ? say('the study {name} is running', { name: other }) : translated(STARTS[next][1]);
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {

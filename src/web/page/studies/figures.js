@@ -5,6 +5,7 @@
  *                                                                           with the choices of the chart; chosen()
  *                                                                           as in chart.js */
 
+import { say } from '../shared/language.js';
 import { showImage } from '../shared/images.js';
 import { button, checkbox, download, element, empty, notice, replace } from '../shared/ui.js';
 
@@ -30,7 +31,7 @@ export function createFigures(lab) {
     study = next;
     bar.hidden = drawable.length === 0;
     draw.disabled = busy || !rows || running;
-    draw.title = rows ? drawable.join(', ') : 'available when there are rows';
+    draw.title = rows ? drawable.join(', ') : say('available when there are rows');
     warning.hidden = bar.hidden || !running;
     drawList(figures, drawable);
   }
@@ -44,7 +45,7 @@ export function createFigures(lab) {
         list,
         empty(
           drawable.length
-            ? `${drawable.join(' and ')} can be drawn when there are rows.`
+            ? say('{figures} can be drawn when there are rows.', { figures: drawable.join(', ') })
             : 'No script in plots/ draws a figure of this study.',
         ),
       );
@@ -57,7 +58,7 @@ export function createFigures(lab) {
   }
 
   function figure(name) {
-    const image = element('img', { alt: `Figure ${name}, drawn from the rows by plots/${name}.gp` });
+    const image = element('img', { alt: say('Figure {name}, drawn from the rows by plots/{name}.gp', { name }) });
     showImage(lab, image, `/api/figures/${name}?drawn=${version}`);
     return image;
   }
@@ -108,7 +109,10 @@ function optionsOf({ quantity, x, by, logX, logY }, format) {
 export function createSave(lab, chosen) {
   const messages = element('div');
   const buttons = FORMATS.map((name) =>
-    button(`Save figure as ${name}`, () => save(name.toLowerCase()), { icon: 'download', small: true }),
+    button(say('Save figure as {format}', { format: name }), () => save(name.toLowerCase()), {
+      icon: 'download',
+      small: true,
+    }),
   );
   const node = element('div', { class: 'study-part' }, element('div', { class: 'buttons' }, buttons), messages);
   let study = null;
@@ -122,7 +126,8 @@ export function createSave(lab, chosen) {
     possible = rows > 0 && !running;
     node.hidden = !rows;
     enable();
-    for (const one of buttons) one.title = running ? 'available after the study ends: drawing would disturb it' : '';
+    for (const one of buttons)
+      one.title = running ? say('available after the study ends: drawing would disturb it') : '';
   }
 
   function enable() {

@@ -2,6 +2,7 @@
  * exports: createStudyForm(lab, {files(), onsaved(file, start)}) -> {open()}
  *   files: the study files that exist. Closing the dialog keeps what was entered. */
 
+import { say } from '../shared/language.js';
 import { numberInput, numberOf } from '../shared/controls.js';
 import { button, checkbox, count, dialog, element, facts, field, notice, replace, seconds } from '../shared/ui.js';
 import { createAxis } from './axis.js';
@@ -21,7 +22,9 @@ function suggestion(lab) {
 }
 
 const time = ({ least_s: least, most_s: most }) =>
-  least === most ? `about ${seconds(most)}` : `${seconds(least)} to ${seconds(most)}`;
+  least === most
+    ? say('about {time}', { time: seconds(most) })
+    : say('{least} to {most}', { least: seconds(least), most: seconds(most) });
 
 function estimated({ cells, rows, notes, text, said, ...times }) {
   return [
@@ -116,8 +119,10 @@ function createForm(lab, files, done) {
     shown() {
       const { file, saved } = lab.state || {};
       scene.textContent = file
-        ? `A study of ${file}${saved ? '' : ', with its unsaved changes in all cells'}.`
-        : 'The scene has no file yet: save it first.';
+        ? saved
+          ? say('A study of {file}.', { file })
+          : say('A study of {file}, with its unsaved changes in all cells.', { file })
+        : say('The scene has no file yet: save it first.');
     },
   };
 

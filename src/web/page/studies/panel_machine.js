@@ -1,5 +1,6 @@
 /* The panel Machine: processors, clocks, and current disturbances of measurements. exports: panel */
 
+import { say } from '../shared/language.js';
 import { needsProgram } from '../shared/commands.js';
 import { button, element, facts, group, notice, replace, seconds } from '../shared/ui.js';
 
@@ -15,7 +16,7 @@ const topology = (text) =>
   );
 
 const clock = ({ tick_s: tick, overhead_s: overhead }) =>
-  `resolution ${seconds(tick)}, cost of a reading ${seconds(overhead)}`;
+  say('resolution {tick}, cost of a reading {cost}', { tick: seconds(tick), cost: seconds(overhead) });
 
 function disturbances(list) {
   if (!list.length) return notice('No disturbances of measurements were found.', { kind: 'good' });
@@ -35,11 +36,11 @@ function draw(place, report) {
           'Topology',
           report.machine
             ? topology(report.machine)
-            : `${report.packages} packages, ${report.cores} cores, ${report.units} processing units`,
+            : say('{packages} packages, {cores} cores, {units} processing units', report),
         ],
         [
           'Vector instructions',
-          report.isa === report.isa_best ? report.isa : `${report.isa}; this machine supports ${report.isa_best}`,
+          report.isa === report.isa_best ? report.isa : say('{isa}; this machine supports {isa_best}', report),
         ],
         ['Hardware counters', report.hardware_counters ? 'available' : 'not available'],
       ]),
@@ -107,7 +108,7 @@ function createReport(root, lab) {
     root.setAttribute('aria-busy', 'true');
     try {
       draw(place, await lab.get('/api/machine'));
-      when.textContent = `as of ${new Date().toLocaleTimeString()}`;
+      when.textContent = say('as of {time}', { time: new Date().toLocaleTimeString(document.documentElement.lang) });
       loaded = true;
     } catch (error) {
       replace(place, notice(error.message, { kind: 'error', remedy: error.remedy }));

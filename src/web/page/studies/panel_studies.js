@@ -1,6 +1,7 @@
 /* The panel Studies: the list of studies and the selected one. While a study runs, the display is refreshed every few
  * seconds only: requests disturb the measurement. exports: panel */
 
+import { say } from '../shared/language.js';
 import { needsProgram } from '../shared/commands.js';
 import { button, element, empty, icon, memory, replace, unique } from '../shared/ui.js';
 import { createDetails } from './details.js';
@@ -81,7 +82,7 @@ function createStudies(root, lab) {
   async function saved(file, start) {
     chosen = file;
     memory.set('study', chosen);
-    lab.say(`${file} saved.`);
+    lab.say(say('{name} saved.', { name: file }));
     try {
       await fetchStudies();
       const study = studies.find((each) => each.file === file);
@@ -128,7 +129,7 @@ function createStudies(root, lab) {
   async function run(study) {
     try {
       await lab.post(path(study, '/run'), {});
-      lab.say(`${study.name} is running; rendering is paused until it finishes.`);
+      lab.say(say('{name} is running; rendering is paused until it finishes.', study));
     } catch (error) {
       lab.fail(error);
     }
@@ -148,7 +149,8 @@ function createStudies(root, lab) {
     const begun = now.running && (!seen.running || seen.name !== now.name);
     const ended = seen.running && !now.running;
     seen = { running: now.running, name: now.name };
-    if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are saved.`);
+    if (ended)
+      lab.say(now.error ? `${now.name}: ${now.error.error}` : say('{name} has ended; all rows are saved.', now));
     if (!visible) return;
     details.progress(now);
     if (begun || ended || now.running) showList();
@@ -186,10 +188,12 @@ export const panel = {
 const fractionOf = ({ frames_done: done, frames_all: all, fraction }) => (all ? (done + (fraction || 0)) / all : 0);
 
 function state(study, running) {
-  if (running) return `running, ${Math.floor(100 * fractionOf(running))} %`;
+  if (running) return say('running, {percent} %', { percent: Math.floor(100 * fractionOf(running)) });
   if (study.error) return 'cannot be read';
   if (study.cells_done >= study.cells) return 'complete';
-  return study.rows ? `${study.cells_done} of ${study.cells} cells` : `${study.cells} cells`;
+  return study.rows
+    ? say('{done} of {n} cells', { done: study.cells_done, n: study.cells })
+    : say('{n} cells', { n: study.cells });
 }
 
 function entry(study, chosen, running, onchoose) {
@@ -215,7 +219,9 @@ function entry(study, chosen, running, onchoose) {
       ),
       element('span', { class: study.error ? 'study-entry-state bad' : 'study-entry-state', text: state(study, now) }),
       element('span', { class: 'study-entry-title', text: study.error ? study.error.error : study.title }),
-      study.error ? null : element('progress', { max: 1, value: String(value), 'aria-label': `${study.name}, done` }),
+      study.error
+        ? null
+        : element('progress', { max: 1, value: String(value), 'aria-label': say('{name}, done', study) }),
     ),
   );
 }

@@ -5,6 +5,7 @@
  *     the second reverses the order, the third restores the original order
  *   createRows(lab) -> {node, show(study, count)}                 the raw rows, newest first */
 
+import { say } from '../shared/language.js';
 import { saveReply } from '../shared/save_file.js';
 import { button, count as inWords, digits, element, empty, group, icon, replace, timeUnit } from '../shared/ui.js';
 import { isNumeric, numberOf, unitOf } from './data.js';
@@ -167,7 +168,7 @@ export function createRows(lab) {
 
   function draw(reply) {
     const rows = reply.rows.slice(-limit).reverse();
-    about.textContent = `${inWords(rows.length)} of ${inWords(reply.count)} rows`;
+    about.textContent = say('{shown} of {n} rows', { shown: inWords(rows.length), n: inWords(reply.count) });
     more.disabled = rows.length >= reply.count || limit >= MOST;
     if (!place.contains(sorted.node))
       replace(place, sorted.node, element('div', { class: 'buttons' }, save, more, about));

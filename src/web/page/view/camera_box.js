@@ -2,6 +2,7 @@
  * buttons in the toolbar go through the history of views; keys of the image move the camera too.
  * exports: cameraBox(root, lab); sets lab.view.camera: {key(event) -> true when handled} */
 
+import { translated } from '../shared/language.js';
 import { button, choice, element, gesture, memory, number } from '../shared/ui.js';
 import { goView, moveCamera } from './camera_moves.js';
 
@@ -131,7 +132,7 @@ export function cameraBox(root, lab) {
   const turns = element('div', { class: 'pad', role: 'group', 'aria-label': 'Rotation' }, turned);
   const nameTurns = () =>
     turned.forEach((node, index) => {
-      node.title = TURNS[settings.around ? 'around' : 'spot'][index];
+      node.title = translated(TURNS[settings.around ? 'around' : 'spot'][index]);
       node.querySelector('.visually-hidden').textContent = node.title;
     });
   const length = number({
@@ -279,7 +280,7 @@ function createFields(root, lab) {
             lab.param(row.path).value.map((old, at) => (at === index ? x : old)),
           ),
       });
-      part.input.setAttribute('aria-label', `${label} ${axis}`);
+      part.input.setAttribute('aria-label', `${translated(label)} ${axis}`);
       return part;
     });
     return {

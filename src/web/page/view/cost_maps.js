@@ -2,6 +2,7 @@
  * the image, with a legend in units.
  * exports: createCostMaps(lab) -> {node} */
 
+import { say, translated } from '../shared/language.js';
 import { showImage } from '../shared/images.js';
 import { saveReply } from '../shared/save_file.js';
 import { button, choice, count, digits, element, facts, group, notice, replace, seconds, svg } from '../shared/ui.js';
@@ -12,9 +13,11 @@ const UNITS = { rays: 'rays per pixel', time: 'ns per pixel', cut: 'fraction of 
 const ABOUT = {
   rays: () => 'Camera, reflected, refracted and shadow rays of each pixel; the same on every machine.',
   time: ({ threads, wall_s: wall }, place) =>
-    `Measured once ${place}, in one frame of ${seconds(wall)} with ${threads} ` +
-    `${threads === 1 ? 'thread' : 'threads'}: another measurement differs. Time is measured for batches of rays, and ` +
-    `divided among the rays of a batch.`,
+    say(
+      'Measured once {place}, in one frame of {time} with {n} threads: another measurement differs. ' +
+        'Time is measured for batches of rays, and divided among the rays of a batch.',
+      { place: translated(place), time: seconds(wall), n: threads },
+    ),
   cut: () =>
     "The fraction of each pixel's light, by weight, that is missing because render.depth or render.min_weight cut " +
     'rays; the same on every machine. The error of a pixel is at most this fraction of the brightest light that was ' +
@@ -22,14 +25,14 @@ const ABOUT = {
 };
 
 const valueOf = {
-  rays: (value) => `${digits(value)} rays`,
+  rays: (value) => say('{n} rays', { n: digits(value) }),
   time: (value) => `${digits(value)} ns`,
   cut: (value) => `${digits(100 * value, 3)} %`,
 };
 
 const sumOf = {
-  rays: (total) => `${count(total)} rays`,
-  time: (total) => `${seconds(total / 1e9)} of all threads`,
+  rays: (total) => say('{n} rays', { n: count(total) }),
+  time: (total) => say('{time} of all threads', { time: seconds(total / 1e9) }),
 };
 
 function legend(answer, which, place) {
@@ -42,7 +45,9 @@ function legend(answer, which, place) {
     element('div', {
       class: 'cost-bar',
       role: 'img',
-      'aria-label': `Colours from 0, dark, to ${cut ? 'at least ' : ''}${valueOf[which](end)}, yellow`,
+      'aria-label': cut
+        ? say('Colours from 0, dark, to at least {value}, yellow', { value: valueOf[which](end) })
+        : say('Colours from 0, dark, to {value}, yellow', { value: valueOf[which](end) }),
       style: { background: `linear-gradient(to right, ${colors.join(', ')})` },
     }),
     element('div', { class: 'cost-ticks', 'aria-hidden': 'true' }, ticks),

@@ -1,6 +1,7 @@
 /* The panel Compare: the reference image A and the newest image B, as images and in numbers, and maps of the cost of
  * each pixel. exports: panel */
 
+import { say } from '../shared/language.js';
 import {
   button,
   choice,
@@ -211,8 +212,8 @@ function pinButtons(lab) {
     show() {
       reference.disabled = !lab.image?.final;
       reference.title = reference.disabled
-        ? 'available when the image is finished'
-        : 'make the current image the reference A';
+        ? say('available when the image is finished')
+        : say('make the current image the reference A');
       drop.disabled = !model.reference;
     },
   };
@@ -289,11 +290,13 @@ export const panel = {
 /* --- the numbers: tables of the reply of /api/compare --- */
 
 const sizes = (a, b) =>
-  `A has ${a.width} × ${a.height} pixels, B ${b.width} × ${b.height}: only images of the same ` +
-  `size can be compared.`;
+  say('A has {a} pixels, B {b}: only images of the same size can be compared.', {
+    a: `${a.width} × ${a.height}`,
+    b: `${b.width} × ${b.height}`,
+  });
 
 /* null means infinity: identical images have no error. */
-const decibels = (value) => (value === null ? '∞ (equal)' : `${digits(value)} dB`);
+const decibels = (value) => (value === null ? say('∞ (equal)') : `${digits(value)} dB`);
 
 function similarity(comparison, goto) {
   const { largest, largest_at: place } = comparison;
@@ -301,7 +304,7 @@ function similarity(comparison, goto) {
     ? element(
         'span',
         { class: 'compare-largest' },
-        `${digits(largest)} at `,
+        `${say('{value} at', { value: digits(largest) })} `,
         button(`${place[0]}, ${place[1]}`, () => goto(...place), { small: true, title: 'Show this pixel' }),
       )
     : '0';

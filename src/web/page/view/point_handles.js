@@ -5,7 +5,8 @@
  *     list() -> [{path, name}]: the parameters to move and their names; symbol: an icon; what: for screen readers
  *   lightTool(lab)     the tool Light: one handle per light */
 
-import { digits, element, gesture, gestures, icon } from '../shared/ui.js';
+import { say, translated } from '../shared/language.js';
+import { element, gesture, gestures, icon, vector } from '../shared/ui.js';
 import { spreadAt } from '../shared/vectors.js';
 import { createWheelZoom } from './camera_moves.js';
 
@@ -98,14 +99,14 @@ export function createPointHandles(lab, { list, symbol, what }) {
     handle.node.classList.toggle('left', at.outside && at.x < 90);
     handle.node.classList.toggle('right', at.outside && at.x > view.stage.clientWidth - 90);
     const showPosition = handle.drag || document.activeElement === handle.node;
-    handle.label.textContent = showPosition
-      ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}`
-      : handle.name;
-    const side = at.behind ? ', behind the camera' : at.outside ? ', outside the image' : '';
-    handle.node.setAttribute(
-      'aria-label',
-      `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}, ${what}${side}`,
-    );
+    handle.label.textContent = showPosition ? `${handle.name}  ${vector(point, 3)}` : handle.name;
+    const about = { name: handle.name, place: vector(point, 3), what: translated(what) };
+    const side = at.behind
+      ? say('{name}  {place}, {what}, behind the camera', about)
+      : at.outside
+        ? say('{name}  {place}, {what}, outside the image', about)
+        : say('{name}  {place}, {what}', about);
+    handle.node.setAttribute('aria-label', side);
   }
 
   /* The world-space offset for dx, dy CSS pixels in the image at the point's own depth, so that the point stays
@@ -140,13 +141,13 @@ export function createPointHandles(lab, { list, symbol, what }) {
 
   function createHandle(path, name) {
     const handle = { path, name, moved: null, drag: null, keys: gestures('point') };
-    handle.label = element('span', { class: 'point-name', text: name });
+    handle.label = element('span', { class: 'point-name', translate: 'no', text: name });
     handle.node = element(
       'button',
       {
         type: 'button',
         class: 'point-handle',
-        title: `${name}: drag or use the arrow keys; with Shift: nearer and farther`,
+        title: say('{name}: drag or use the arrow keys; with Shift: nearer and farther', { name }),
         onfocus: () => show(handle),
         onblur: () => show(handle),
       },

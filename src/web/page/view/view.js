@@ -33,6 +33,7 @@
  *   view.isDrawn()                      whether none does
  * lab.on('view', f) reports a change of scale, position or size: elements in overlay must be placed again. */
 
+import { say } from '../shared/language.js';
 import { button, element, svg, write } from '../shared/ui.js';
 import { spreadAt } from '../shared/vectors.js';
 import { createAxes } from './axes.js';
@@ -274,7 +275,7 @@ function createNotes() {
       'div',
       { class: 'view-note' },
       element('span', { text }),
-      button(`Close: ${text}`, onclose, { icon: 'close', bare: true, small: true, kind: 'quiet' }),
+      button(say('Close: {text}', { text }), onclose, { icon: 'close', bare: true, small: true, kind: 'quiet' }),
     );
     notes.set(name, { text, node: line });
     node.append(line);
