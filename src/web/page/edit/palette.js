@@ -1,4 +1,4 @@
-/* The palette of the optical bench in the panel Objects: pictures of lenses, prisms, mirrors and beams. One action puts
+/* The palette of the optical bench in the panel Objects: drawings of lenses, prisms, mirrors and beams. One action puts
  * a thing upright into the plane of the bench, where light passes it; if none does, with light of its own.
  *
  * exports: createPalette(lab, choice) -> node; lab.palette = {add(id) -> promise of true on success} */

@@ -175,18 +175,18 @@ const light = (set) => (s) => ({ parts: [], half: [0, 0], beam: { at: [0, 0], an
 
 /* --- drawings: glass, metal and rays, 48 x 36 --- */
 
-const picture =
+const drawn =
   ({ glass, metal, rays }) =>
   () =>
     svg(
       'svg',
-      { class: 'palette-picture', viewBox: '0 0 48 36', 'aria-hidden': 'true', focusable: 'false' },
+      { class: 'palette-drawing', viewBox: '0 0 48 36', 'aria-hidden': 'true', focusable: 'false' },
       rays ? svg('path', { class: 'ray', d: rays }) : null,
       glass ? svg('path', { class: 'glass', d: glass }) : null,
       metal ? svg('path', { class: 'metal', d: metal }) : null,
     );
 
-const item = (id, name, title, drawing, make) => ({ id, name, title, icon: picture(drawing), make });
+const item = (id, name, title, drawing, make) => ({ id, name, title, icon: drawn(drawing), make });
 
 export const palette = [
   [

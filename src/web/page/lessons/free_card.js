@@ -9,7 +9,7 @@ const WINDOW = [-20, 20, -12, 12];
 const drawing = () =>
   svg(
     'svg',
-    { class: 'thumbnail palette-picture', viewBox: '0 0 120 90', 'aria-hidden': 'true', focusable: 'false' },
+    { class: 'thumbnail palette-drawing', viewBox: '0 0 120 90', 'aria-hidden': 'true', focusable: 'false' },
     svg('path', { class: 'ray', d: 'M4 30H44L116 62M4 45H116M4 60H44L116 28' }),
     svg('path', { class: 'glass', d: 'M44 18Q62 45 44 72Q26 45 44 18Z' }),
     svg('path', { class: 'glass', d: 'M92 6L106 30H78Z' }),
