@@ -222,7 +222,7 @@ export const cases = {
     await screen.button('Show the measurement').tap();
     await screen.page.locator('.lesson-value').waitFor();
     await screen.settled();
-    t.check(await screen.stage.isVisible(), 'the image next to the lesson');
+    await screen.page.locator('.section-ray').first().waitFor();
     await t.image(screen, 'browser-phone-lesson');
   },
 

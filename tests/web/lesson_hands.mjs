@@ -51,7 +51,7 @@ function plan(name) {
     },
     coin: () => dial(end(of('sight')[0]), 270, angle(of('sight')[1].line)),
     'critical-angle': () => {
-      const first = segments.filter(({ one }) => one.level === 0 && one.node.hit?.tir);
+      const first = segments.filter(({ one }) => one.level === 1 && one.node.hit?.tir);
       const best = first.reduce((a, b) =>
         a.one.node.hit.snell.incidence_deg < b.one.node.hit.snell.incidence_deg ? a : b,
       );
@@ -59,7 +59,7 @@ function plan(name) {
     },
     window: () => {
       const out = segments.filter(
-        ({ one }) => one.level === 0 && one.node.hit && !one.node.hit.tir && one.node.hit.solid === 'liquid',
+        ({ one }) => one.level === 1 && one.node.hit && !one.node.hit.tir && one.node.hit.solid === 'liquid',
       );
       const far = out.map(end).reduce((a, b) => (b[0] > a[0] ? b : a));
       return ruler([0, far[1]], far);
@@ -73,7 +73,7 @@ function plan(name) {
     'lens-formula': () => screen(crossing(last('rays', 3), last('rays', 4))),
     prism: () => dial(end(of('ray')[0]), angle(of('ray')[0].line), angle(last('ray', 0))),
     rainbow: () => {
-      const back = segments.filter(({ beam, one, line }) => beam === 'ray' && one.level === 3 && line.along[2] < 0)[0];
+      const back = segments.filter(({ beam, one, line }) => beam === 'ray' && one.level === 4 && line.along[2] < 0)[0];
       return dial(flat(back.line.from), angle(of('ray')[0].line, 180), angle(back.line));
     },
     sea: () => screen([-0.88 + Math.log(2) / 0.6, 1]),
@@ -87,7 +87,7 @@ function plan(name) {
     plates: () => screen(flat([0, 0, 3.6])),
     'pale-glass': () => {
       const up = segments.filter(
-        ({ one, line }) => one.level === 3 && one.node.kind === 'refract' && line.along[1] > 0,
+        ({ one, line }) => one.level === 4 && one.node.kind === 'refract' && line.along[1] > 0,
       )[0];
       return ruler(end(of('ray')[0]), flat(up.line.from));
     },

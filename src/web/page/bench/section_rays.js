@@ -91,7 +91,7 @@ export function rayMarks(port, plane, segments) {
 
 export function extensionMarks(port, plane, segments) {
   const axes = { u: plane.right, v: plane.up };
-  const last = segments.filter(({ one }) => !one.node.hit && one.level > 0 && one.weight >= EXTENDED);
+  const last = segments.filter(({ one }) => !one.node.hit && one.level > 1 && one.weight >= EXTENDED);
   return last.flatMap(({ line }) => {
     const back = { from: line.from, along: line.along.map((x) => -x), end: Infinity };
     const ends = flatLine(back, axes, frameOf(port));

@@ -138,7 +138,7 @@ export function createTools(lab, section) {
     const node = svg(
       'g',
       { class: 'section-tool-handle', tabindex: '0', role: 'button', 'aria-label': label },
-      svg('circle', { class: 'grip', r: 18 }),
+      svg('circle', { class: 'grip', r: 22 }),
       svg('circle', { class: 'knob', r: 7 }),
     );
     node.dataset.handle = index;

@@ -48,6 +48,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
   const choices = (lesson.prediction.choices || []).map((word) =>
     button(word, () => show(word), { pressed: word === predicted }),
   );
+  const reveal = button('Show the measurement', () => show(null), { small: true, kind: 'quiet' });
   const hand = createHandStep(lab, lesson, {
     taken,
     truth: () => measured?.truth,
@@ -90,14 +91,13 @@ export function createLesson(root, lab, lesson, { back, again }) {
 
   function createPrediction() {
     const { ask } = lesson.prediction;
-    const reveal = button('Show the measurement', () => show(null), { small: true, kind: 'quiet' });
     const fields = choices.length
       ? element('div', { class: 'lesson-choices', role: 'group', 'aria-label': ask }, choices, reveal)
-      : createNumber(ask, reveal);
+      : createNumber(ask);
     return element('div', { class: 'lesson-prediction' }, element('p', { text: ask }), fields);
   }
 
-  function createNumber(ask, reveal) {
+  function createNumber(ask) {
     const field = number({ onchange: null });
     field.input.setAttribute('aria-label', ask);
     const go = () => Number.isFinite(field.value) && show(field.value);
@@ -155,6 +155,7 @@ export function createLesson(root, lab, lesson, { back, again }) {
       choice.setAttribute('aria-pressed', String(word === predicted));
       choice.classList.toggle('right', open && word === measured?.right);
     }
+    reveal.hidden = open;
     hand.draw();
     replace(verdict, open ? judge() : null);
     replace(answer, open && measured && !measured.failure ? createAnswer() : null);
