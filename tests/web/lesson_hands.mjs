@@ -73,7 +73,9 @@ function plan(name) {
     'lens-formula': () => screen(crossing(last('rays', 3), last('rays', 4))),
     prism: () => dial(end(of('ray')[0]), angle(of('ray')[0].line), angle(last('ray', 0))),
     rainbow: () => {
-      const back = segments.filter(({ beam, one, line }) => beam === 'ray' && one.level === 4 && line.along[2] < 0)[0];
+      const back = segments.filter(
+        ({ beam, one, line }) => beam === 'ray' && one.level === 4 && one.node.kind === 'refract' && line.along[2] < 0,
+      )[0];
       return dial(flat(back.line.from), angle(of('ray')[0].line, 180), angle(back.line));
     },
     sea: () => screen([-0.88 + Math.log(2) / 0.6, 1]),
