@@ -161,6 +161,10 @@ export function createView(root, lab) {
 function keepFirstImage(root, stage, lab) {
   const early = root.querySelectorAll('.first-image, .first-progress');
   stage.prepend(...early);
+  const [image] = early;
+  const room = (name) => image[`client${name}`] / image[`natural${name}`];
+  const scale = image ? Math.min(room('Width'), room('Height')) : 1;
+  if (scale > 1 && scale < CRISP) image.style.objectFit = 'none'; /* where the engine's image will be */
   const end = lab.on('image', () => {
     if (!lab.image) return;
     for (const node of early) node.remove();
