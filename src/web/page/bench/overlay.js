@@ -10,20 +10,26 @@ import { add, length, minus, times } from '../shared/vectors.js';
 import { fanMarks } from './fan.js';
 import { degrees } from './measure.js';
 import { distance, fraction } from './ray_overlay.js';
-import { isCut, lineBetween, pointAt, seenLine } from './ray_tree.js';
+import { edged, inked, isCut, lineBetween, pointAt, seenLine } from './ray_tree.js';
 
 const LINES_MAX = 3000;
+const WIDEST = 2.6; /* CSS pixels, of a ray with all its power */
 const NEAR_PX = 9;
 const POINT_PX = 11; /* a hit or a start within this distance is preferred to a point between them */
 
+const LETTER = 0.58; /* mean width of a letter, in heights of the text */
+
+const meet = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 const at = ([x1, y1], [x2, y2]) => ({ x1, y1, x2, y2 });
 
 export function createBenchOverlay(lab, bench) {
   const layer = lab.view.layer('bench');
   let pieces = [];
+  let room = []; /* boxes of the labels that are drawn */
   return { draw, nearest };
 
   function draw() {
+    room = [];
     const shown = bench.rays.segments.filter(({ one }) => !isCut(one)).slice(0, LINES_MAX);
     pieces = shown.map(piece).filter(Boolean);
     const { chosen, points } = bench;
@@ -53,11 +59,10 @@ export function createBenchOverlay(lab, bench) {
   }
 
   function line({ segment, a, b }, name) {
-    const strength = Math.sqrt(Math.min(1, segment.one.weight));
-    const halo = name === 'bench-halo';
-    const attributes = { class: name, ...at(a, b), 'stroke-width': (halo ? 3.5 : 1.4) + 1.2 * strength };
-    if (!halo) Object.assign(attributes, { stroke: segment.css, 'stroke-opacity': (0.3 + 0.7 * strength).toFixed(3) });
-    return svg('line', attributes);
+    const { weight } = segment.one;
+    return name === 'bench-halo'
+      ? edged(svg('line', { class: name, ...at(a, b) }), weight, WIDEST, 2)
+      : inked(svg('line', { class: name, ...at(a, b), stroke: segment.css }), weight, WIDEST);
   }
 
   function stroke(line, name) {
@@ -74,9 +79,18 @@ export function createBenchOverlay(lab, bench) {
     const place = lab.view.project(point);
     if (!place) return [];
     const size = labelSize() / lab.view.scale;
-    return [
-      svg('text', { class: 'bench-text', x: place.x + 0.7 * size, y: place.y - 0.6 * size, 'font-size': size }, text),
-    ];
+    const width = LETTER * size * text.length;
+    const spots = [1, 2, 3].flatMap((far) => [
+      [place.x + 0.7 * size, place.y - (1.3 * far - 0.7) * size],
+      [place.x + 0.7 * size, place.y + 1.3 * far * size],
+      [place.x - 0.7 * size - width, place.y - (1.3 * far - 0.7) * size],
+      [place.x - 0.7 * size - width, place.y + 1.3 * far * size],
+    ]);
+    const boxes = spots.map(([x, y]) => [x, y - size, x + width, y + 0.3 * size]);
+    const free = boxes.findIndex((box) => !room.some((other) => meet(box, other)));
+    const [x, y] = spots[Math.max(0, free)];
+    room.push(boxes[Math.max(0, free)]);
+    return [svg('text', { class: 'bench-text', x, y, 'font-size': size }, text)];
   }
 
   /* The normal to both sides of the surface, and the angles. */

@@ -8,10 +8,10 @@
  *   fraction(p, a, b)                  0..1 of the way from a to b, where a line in the image is nearest to a point
  *   distance(p, a, b)                  of a point from a line in the image
  *   drawn(tree) -> rays                the rays that drawings show
- *   strokeWidth(ray)                   the width of its line, by its weight */
+ *   WIDEST                             the width of the line of a ray with all its power */
 
 import { svg } from '../shared/ui.js';
-import { lineClass, seenLine } from './ray_tree.js';
+import { edged, inked, lineClass, seenLine } from './ray_tree.js';
 
 const LIGHTEST = 0.002; /* weight below which rays are not drawn */
 const LINES_MAX = 1500;
@@ -22,7 +22,7 @@ export function drawn(tree) {
   return heavy.length <= LINES_MAX ? heavy : heavy.sort((a, b) => b.weight - a.weight).slice(0, LINES_MAX);
 }
 
-export const strokeWidth = (ray) => (1.4 + 1.4 * Math.sqrt(ray.weight)).toFixed(2);
+export const WIDEST = 2.8;
 
 export function createRayOverlay(lab) {
   const layer = lab.view.layer('pixel');
@@ -56,8 +56,8 @@ export function createRayOverlay(lab) {
         y1: one.a[1],
         x2: one.b[0],
         y2: one.b[1],
-        'stroke-width': strokeWidth(one.ray),
       });
+      inked(one.node, one.ray.weight, WIDEST);
     }
     overlay.count = rays.length;
     overlay.omitted = tree ? tree.rays.length - rays.length : 0;
@@ -69,14 +69,8 @@ export function createRayOverlay(lab) {
 
   /* A dark edge makes the ray visible on any image. */
   function halo({ ray, a, b }) {
-    return svg('line', {
-      class: 'ray-halo',
-      x1: a[0],
-      y1: a[1],
-      x2: b[0],
-      y2: b[1],
-      'stroke-width': Number(strokeWidth(ray)) + 2,
-    });
+    const node = svg('line', { class: 'ray-halo', x1: a[0], y1: a[1], x2: b[0], y2: b[1] });
+    return edged(node, ray.weight, WIDEST, 2);
   }
 
   /* The pixel itself with arms of 10 CSS pixels, at any zoom. */

@@ -8,8 +8,8 @@ import { say } from '../shared/language.js';
 import { digits, element, svg, unique } from '../shared/ui.js';
 import { dot, unit } from '../shared/vectors.js';
 import { hull } from '../view/solids.js';
-import { drawn, strokeWidth } from './ray_overlay.js';
-import { flatLine, lineClass, pointAt } from './ray_tree.js';
+import { drawn, WIDEST } from './ray_overlay.js';
+import { flatLine, inked, lineClass, pointAt } from './ray_tree.js';
 
 const WIDTH = 250;
 const HEIGHT = 220;
@@ -83,8 +83,8 @@ export function createRayPlot({ title, onmark, onchoose }) {
       y1: a[1],
       x2: b[0],
       y2: b[1],
-      'stroke-width': strokeWidth(ray),
     });
+    inked(one, ray.weight, WIDEST);
     lines.set(ray, one);
     return [one];
   }

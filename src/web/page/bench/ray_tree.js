@@ -10,6 +10,8 @@
  *     relative to the camera ray; line: a short stub for a ray that was cut off; reach: extent of the hits
  *   isCut(ray)                           whether the ray was cut off by depth or weight
  *   lineClass(ray)                       the class of its line in a drawing
+ *   inkOf(weight) -> {part, seen}        how a line shows the power of its ray, in all drawings of the page;
+ *   inked(node, weight, widest), edged(node, weight, widest, edge) -> node     gives it to a line, and to its edge
  *   kinds                                [class, description] of each, for legends
  *   columns, describe(ray)               [key, head, title] of the table's columns, and the texts of a row
  *   lineTo(from, farEnd), lineBetween(from, to) -> line
@@ -27,6 +29,31 @@ import { add, dot, length, mean, minus, times } from '../shared/vectors.js';
 const NEAR = 1e-6; /* the constants of render/inspect/ray_line.c */
 const NEAR_OF_EYE = 1e-9;
 const ALONG_THE_VIEW = 1e-12;
+
+/* Of a ray with the fraction w of the beam's power, the part of the full width, sqrt w, and the opacity, the cube root
+ * of w, as the eye sees the lightness of a luminance w (CIE L*). Both have a least value, so that a line can be seen. */
+export const inkOf = (weight) => {
+  const w = Math.min(1, Math.max(0, weight));
+  return { part: Math.max(0.25, Math.sqrt(w)), seen: Math.max(0.12, Math.cbrt(w)) };
+};
+
+/* The width and opacity of a line; a style sheet gives it another full width by --part. */
+export function inked(node, weight, widest) {
+  const { part, seen } = inkOf(weight);
+  node.setAttribute('stroke-width', (widest * part).toFixed(2));
+  node.setAttribute('stroke-opacity', seen.toFixed(3));
+  node.style.setProperty('--part', part.toFixed(3));
+  return node;
+}
+
+/* The dark edge of that line. */
+export function edged(node, weight, widest, edge) {
+  const { part, seen } = inkOf(weight);
+  node.setAttribute('stroke-width', (widest * part + edge).toFixed(2));
+  node.setAttribute('opacity', seen.toFixed(3));
+  node.style.setProperty('--part', part.toFixed(3));
+  return node;
+}
 
 export const lineBetween = (from, to) => ({ from, along: minus(to, from), end: 1 });
 

@@ -13,13 +13,14 @@
 import { say } from '../shared/language.js';
 import { digits, svg } from '../shared/ui.js';
 import { dot } from '../shared/vectors.js';
-import { isCut, flatLine } from './ray_tree.js';
+import { flatLine, inked, isCut } from './ray_tree.js';
 import { flat } from './section_plane.js';
 
 const LINES_MAX = 3000;
 const LIGHTEST = 0.001; /* fraction of a ray's power below which its branches are not drawn */
 const EXTENDED = 0.05; /* fraction of a ray's power from which it is extended backwards */
 const IN_PLANE = 1e-3; /* distance from the plane, in heights of the window */
+const WIDEST = 2.2; /* CSS pixels, of a ray with all its power */
 const ARROW_PX = 7;
 const ARROW_LEAST_PX = 44; /* shorter pieces have no arrowhead */
 
@@ -75,14 +76,12 @@ export function rayMarks(port, plane, segments) {
     if (!ends) return [];
     const [a, b] = ends.map(([u, v]) => [port.x(u), port.y(v)]);
     const leaves = b[0] < 1 || b[1] < 1 || b[0] > port.width - 1 || b[1] > port.height - 1;
-    const strength = Math.sqrt(Math.min(1, segment.one.weight));
     const cut = isCut(segment.one);
     const node = svg('path', {
       class: `section-ray${isAside(port, plane, segment) ? ' aside' : ''}${cut ? ' cut' : ''}`,
       d: `M${a.map(round)}L${b.map(round)}${cut ? '' : arrow(a, b, leaves)}`,
-      'stroke-width': (0.7 + 1.3 * strength).toFixed(2),
-      'stroke-opacity': (0.12 + 0.88 * strength).toFixed(3),
     });
+    inked(node, segment.one.weight, WIDEST);
     node.style.setProperty('stroke', inkOf(segment.ray.displayed));
     node.dataset.beam = segment.beam;
     return [node];
