@@ -21,16 +21,16 @@ typedef struct call {
 typedef status api_handler(call *c);
 
 api_handler api_state, api_scene, api_find, api_set, api_reset, api_undo, api_redo, api_camera, api_view,
-    api_scene_file, api_command, api_image_png, api_image_jpeg, api_trace_json, api_trace_text, api_trace_drawing,
-    api_set_reference, api_clear_reference, api_reference_image, api_compare, api_compare_map, api_maps,
-    api_map_of_rays, api_map_of_time, api_map_of_cut, api_add, api_remove, api_move, api_turn, api_scale, api_rename,
-    api_material, api_copy, api_contents, api_files, api_open, api_save, api_media, api_slime, api_grab, api_move_hand,
-    api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows, api_study_rows_csv,
-    api_study_summary_tsv, api_study_compare, api_study_draw, api_study_figure, api_figure, api_machine, api_notes,
-    api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open, api_lesson_measure,
-    api_lesson_thumbnail, api_thumbnail, api_study_new, api_fan, api_fan_csv, api_fan_drawing, api_realism,
-    api_realism_csv, api_realism_curve, api_realism_curve_csv, api_video, api_video_stop, api_video_file, api_motion,
-    api_motion_stop, api_rescue, api_lens, api_lens_csv, api_section, api_section_drawing;
+    api_scene_file, api_command, api_image_png, api_image_jpeg, api_display, api_trace_json, api_trace_text,
+    api_trace_drawing, api_set_reference, api_clear_reference, api_reference_image, api_compare, api_compare_map,
+    api_maps, api_map_of_rays, api_map_of_time, api_map_of_cut, api_add, api_remove, api_move, api_turn, api_scale,
+    api_rename, api_material, api_copy, api_contents, api_files, api_open, api_save, api_media, api_slime, api_grab,
+    api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
+    api_study_rows_csv, api_study_summary_tsv, api_study_compare, api_study_draw, api_study_figure, api_figure,
+    api_machine, api_notes, api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open,
+    api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new, api_fan, api_fan_csv, api_fan_drawing,
+    api_realism, api_realism_csv, api_realism_curve, api_realism_curve_csv, api_video, api_video_stop, api_video_file,
+    api_motion, api_motion_stop, api_rescue, api_lens, api_lens_csv, api_section, api_section_drawing;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -100,5 +100,13 @@ status api_read_study(call *c, study **s);
 
 /* Waits for the final image of the current scene document. */
 status api_wait_for_final(call *c, const shared_image **out);
+
+/* A final image whose scene is rendered once more; the ask of a cancel token, whether nobody can use that any more: the
+ * scene changed, a study began, or the laboratory ends. */
+typedef struct final_question {
+    lab *l;
+    const shared_image *final;
+} final_question;
+bool api_is_obsolete(void *final_question);
 /* The file name of the scene document, "" for none; allocated memory, NULL when out of memory. */
 char *api_document_file(const call *c);

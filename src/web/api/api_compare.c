@@ -154,15 +154,9 @@ status api_compare_map(call *c)
 static const char *const names[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "time", [PIXEL_CUT] = "cut"};
 static const char *const units[PIXEL_MAPS] = {[PIXEL_RAYS] = "rays", [PIXEL_TIME] = "ns", [PIXEL_CUT] = ""};
 
-typedef struct map_question {
-    lab *l;
-    const shared_image *final;
-} map_question;
-
-/* The ask of a cancel token: whether nobody can use the maps any more. */
-static bool are_obsolete(void *context)
+bool api_is_obsolete(void *context)
 {
-    const map_question *q = context;
+    const final_question *q = context;
     return studies_ending(q->l->studies) || studies_runs(q->l->studies, NULL) ||
            scene_document_generation(q->l->scene_document) != q->final->generation;
 }
@@ -174,10 +168,10 @@ static status get_maps(call *c, pixel_map_set *set, int which, unsigned char **p
         return api_refuse(c, 409, "a study is measuring, and the frame of the maps would disturb it",
                           "wait until the study ends, or stop it");
     TRY(api_wait_for_final(c, &final));
-    map_question q = {c->l, final};
+    final_question q = {c->l, final};
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
-        cancel_token token = {.ask = are_obsolete, .context = &q};
+        cancel_token token = {.ask = api_is_obsolete, .context = &q};
         cancel_begin(&token);
         code = pixel_maps_of(c->l->pixel_maps, final, set, which, png, size, &c->why);
         cancel_end(&token);

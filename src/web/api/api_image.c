@@ -1,9 +1,14 @@
 /* API: the rendered image, and a self-contained page that shows it, as `cuvette render -o FILE.html` writes it. See
  * web/README.md. */
+#include "base/cancel.h"
 #include "base/text.h"
+#include "job/job.h"
 #include "report/page.h"
 #include "scene/file/shared.h"
+#include "scene/model/camera.h"
+#include "scene/model/scene.h"
 #include "web/api/api.h"
+#include "web/session/studies.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -118,6 +123,75 @@ status api_image_png(call *c)
 status api_image_jpeg(call *c)
 {
     return reply_image(c, (encoding){.format = IMAGE_JPEG, .type = "image/jpeg"});
+}
+
+/* --- the final image once more, with the pixels of a display --- */
+
+#define DISPLAY_LIMIT_S 20.0
+
+static status render_display(const final_question *q, int width, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    job *j = NULL;
+    job_account account = {.result = NULL};
+    image *linear = NULL;
+    scene *s = scene_clone(q->final->rendered);
+    if (!s)
+        return out_of_memory(why);
+    s->render.height = (s->render.height * width + s->render.width / 2) / s->render.width;
+    s->render.width = width;
+    status code = job_create(&(job_settings){.level = &q->l->settings.level, .time_s = DISPLAY_LIMIT_S}, &j, why);
+    THEN(code, job_render(j, s, NULL, &account, why));
+    THEN(code, film_image(account.result->img, &linear, why));
+    if (code == STATUS_OK) {
+        linear->tone = camera_tone(s);
+        code = image_encode(linear, IMAGE_PNG, 8, true, bytes, size, why);
+    }
+    image_destroy(linear);
+    job_account_release(&account);
+    job_destroy(j);
+    scene_destroy(s);
+    return code;
+}
+
+/* ?width: at most four times that of the image. */
+static bool read_width(call *c, const shared_image *final, int *width)
+{
+    const char *text = http_query_value(c->request, "width");
+    char *end = NULL;
+    const long value = text ? strtol(text, &end, 10) : 0;
+    const double pixels = (double)value * (double)value * final->height / final->width;
+    *width = (int)value;
+    return text && *end == '\0' && value > 0 && value <= 4L * final->width && pixels <= DOCUMENT_PIXELS_MAX;
+}
+
+status api_display(call *c)
+{
+    const shared_image *final = NULL;
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    int width;
+    if (studies_runs(c->l->studies, NULL))
+        return api_refuse(c, 409, "a study is measuring, and this frame would disturb it", "wait until the study ends");
+    TRY(api_wait_for_final(c, &final));
+    final_question q = {c->l, final};
+    status code = read_width(c, final, &width)
+                      ? semaphore_acquire(c->l->heavy, &c->why)
+                      : api_refuse(c, 400, "invalid width", "give at most four times the width of the image");
+    if (code == STATUS_OK) {
+        cancel_token token = {.ask = api_is_obsolete, .context = &q};
+        cancel_begin(&token);
+        code = render_display(&q, width, &bytes, &size, &c->why);
+        cancel_end(&token);
+        semaphore_release(c->l->heavy);
+    }
+    if (code == STATUS_INTERRUPTED)
+        code = api_refuse(c, 409, "the frame is not finished: the scene changed, or it took too long", "try again");
+    if (code == STATUS_OK) {
+        api_send(c, "image/png", bytes, size);
+        add_number(c->reply, "X-Cuvette-Serial", final->serial);
+    }
+    shared_image_release(final);
+    return code;
 }
 
 /* --- the page --- */

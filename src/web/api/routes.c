@@ -26,6 +26,7 @@ static const struct api_route {
     {"GET", "/api/page.html", api_page, NO_BODY},
     {"GET", "/api/image.png", api_image_png, NO_BODY},
     {"GET", "/api/image.jpg", api_image_jpeg, NO_BODY},
+    {"GET", "/api/display.png", api_display, NO_BODY},
     {"GET", "/api/trace", api_trace_json, NO_BODY},
     {"GET", "/api/trace.txt", api_trace_text, NO_BODY},
     {"GET", "/api/trace.svg", api_trace_drawing, NO_BODY},

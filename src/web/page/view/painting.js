@@ -1,7 +1,10 @@
 /* Fetches the newest pass and draws it: every image that is newer than the displayed one, also while the scene changes
  * faster than images come. Serials order the images, also while a slime moves within one generation. A final image that
  * was drawn from a JPEG is replaced by the exact one when the scene rests; only then lab.image.final is true.
+ * At rest it is shown with the display's pixels (sharp_image.js).
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
+
+import { createSharp } from './sharp_image.js';
 
 /* --- which encoding to fetch ---
  * A small JPEG while changes follow each other, before the final pass, and on a slow link as the first image of a pass;
@@ -51,6 +54,7 @@ export function createPainting(canvas, view, place, lab) {
   const context = canvas.getContext('2d', { alpha: true });
   const probe = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
   const source = createImageSource(lab);
+  const sharp = createSharp(lab, view, place, schedule);
   const passes = new Map();
   let bitmap = null;
   let instead = null;
@@ -145,6 +149,7 @@ export function createPainting(canvas, view, place, lab) {
     if (resized) place.fit();
     else schedule();
     lab.emit('image', lab.image);
+    sharp.follow(shown);
   }
 
   async function show(blob) {
@@ -163,15 +168,18 @@ export function createPainting(canvas, view, place, lab) {
     const ratio = devicePixelRatio;
     const width = Math.max(1, Math.round(place.width * ratio));
     const height = Math.max(1, Math.round(place.height * ratio));
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    else context.clearRect(0, 0, width, height);
+    if (canvas.width !== width || canvas.height !== height) {
+      Object.assign(canvas, { width, height });
+      sharp.follow(shown);
+    } else context.clearRect(0, 0, width, height);
     const drawn = instead || bitmap;
     if (!drawn || !view.width) return;
+    const fine = instead ? null : sharp.of(shown);
     const coarse = drawn.width < view.width;
-    context.imageSmoothingEnabled = coarse || place.scale * ratio < 2;
+    context.imageSmoothingEnabled = Boolean(fine) || coarse || place.scale * ratio < 2;
     context.imageSmoothingQuality = lab.dragging() ? 'low' : 'high';
     context.drawImage(
-      drawn,
+      fine || drawn,
       place.left * ratio,
       place.top * ratio,
       view.width * place.scale * ratio,
