@@ -74,8 +74,8 @@ export function createHead(root, lab) {
   lab.on('state', (state) => {
     write(title, { textContent: state.title || 'Untitled scene' });
     write(file, { textContent: state.file || 'not saved to a file yet' });
-    write(mark, { hidden: state.saved });
-    write(document, { title: `${state.saved ? '' : '• '}${state.title || 'Cuvette'}` });
+    write(mark, { hidden: !state.unsaved });
+    write(document, { title: `${state.unsaved ? '• ' : ''}${state.title || 'Cuvette'}` });
     const [undone, redone] = [state.undo, state.redo].map(translated);
     write(undo, { disabled: !undone, title: undone ? say('Undo {what}', { what: undone }) : say('Nothing to undo') });
     write(redo, { disabled: !redone, title: redone ? say('Redo {what}', { what: redone }) : say('Nothing to redo') });

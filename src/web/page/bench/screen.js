@@ -3,6 +3,7 @@
 
 import { say } from '../shared/language.js';
 import { plot } from '../shared/plot.js';
+import { createRenewal } from '../shared/renewal.js';
 import { button, checkbox, count, digits, element, facts, notice, number, replace, toByte } from '../shared/ui.js';
 import { add, length, times, unit } from '../shared/vectors.js';
 import { pointAt } from './ray_tree.js';
@@ -36,6 +37,7 @@ function cornersOf([x, y, z, nx, ny, nz, width, height]) {
 
 export function createBenchScreen(lab, bench, changed) {
   const values = PARTS.map(([, value]) => value);
+  let placed = values.join();
   const result = element('div', { class: 'bench-result', 'aria-live': 'polite' });
   const fields = PARTS.map(([label, value], i) =>
     number({
@@ -49,7 +51,8 @@ export function createBenchScreen(lab, bench, changed) {
     }),
   );
   const shown = checkbox('Show the screen in the image', false, outline);
-  const expose = button('Expose', act, { small: true, kind: 'primary' });
+  const renewal = createRenewal(lab, result, act);
+  const expose = button('Expose', renewal.run, { small: true, kind: 'primary' });
   const across = button('Place across the chosen segment', place, { small: true });
   const node = element(
     'div',
@@ -61,6 +64,7 @@ export function createBenchScreen(lab, bench, changed) {
       fields.map((field) => field.node),
     ),
     element('div', { class: 'buttons' }, expose, across),
+    renewal.node,
     result,
   );
   return { node };
@@ -68,6 +72,8 @@ export function createBenchScreen(lab, bench, changed) {
   function outline() {
     const corners = shown.input.checked ? cornersOf(values) : null;
     bench.screen = corners && { corners };
+    if (values.join() !== placed) renewal.changed();
+    placed = values.join();
     changed();
   }
 
@@ -100,10 +106,13 @@ export function createBenchScreen(lab, bench, changed) {
           `&bins=${columns},${rows}&rays=${rays}`,
       );
       draw(answer, width);
+      return true;
     } catch (error) {
       replace(result, notice(error.message, { kind: 'error', remedy: error.remedy }));
+      return false;
+    } finally {
+      expose.disabled = false;
     }
-    expose.disabled = false;
   }
 
   function draw(answer, width) {

@@ -2,6 +2,7 @@
  * exports: createBenchTheory(lab) -> {node} */
 
 import { say } from '../shared/language.js';
+import { createRenewal } from '../shared/renewal.js';
 import { saveReply } from '../shared/save_file.js';
 import { theoryChart, pretty } from '../shared/theory_chart.js';
 import { button, choice, digits, element, notice, replace, table } from '../shared/ui.js';
@@ -51,32 +52,26 @@ function metrics({ values, defined, passed }) {
 export function createBenchTheory(lab) {
   const result = element('div', { class: 'bench-result', 'aria-live': 'polite' });
   const curves = element('div', { class: 'bench-result' });
-  const age = element('p', { class: 'hint', hidden: true, text: 'From an earlier state of the scene: measure again.' });
-  const measure = button('Measure', act, { icon: 'ruler', small: true, kind: 'primary' });
-  let generation = null;
+  const renewal = createRenewal(lab, result, act);
+  const measure = button('Measure', renewal.run, { icon: 'ruler', small: true, kind: 'primary' });
   let curve = null;
-  const node = element('div', { class: 'bench-theory' }, measure, age, result, curves);
-  lab.on('scene', () => {
-    age.hidden = generation === null || generation === lab.scene.generation;
-  });
+  const node = element('div', { class: 'bench-theory' }, measure, renewal.node, result, curves);
   return { node };
 
   async function act() {
     measure.disabled = true;
-    const measured = lab.scene.generation;
     try {
       const answer = await lab.get('/api/realism');
       replace(result, metrics(answer), save('/api/realism.csv', 'realism'));
       offer(answer.curves);
-      generation = measured;
-      age.hidden = measured === lab.scene.generation;
+      return true;
     } catch (error) {
       replace(result, notice(error.message, { kind: 'error', remedy: error.remedy }));
       replace(curves);
-      generation = null;
-      age.hidden = true;
+      return false;
+    } finally {
+      measure.disabled = false;
     }
-    measure.disabled = false;
   }
 
   function save(address, name) {

@@ -6,7 +6,7 @@
  *   set(value, true): after a rejected value
  *   written(x): a number as text with 7 digits; '' for NaN */
 
-import { numberInput, numberOf, scale } from '../shared/controls.js';
+import { numberInput, numberOf, restoreField, scale } from '../shared/controls.js';
 import { local, say, translated } from '../shared/language.js';
 import { element, gesture, gestures, toByte, toLinear, unique } from '../shared/ui.js';
 
@@ -25,9 +25,9 @@ function numberBox(context, label, onvalue) {
   const input = numberInput(attributes(context, label));
   let last = null;
   input.addEventListener('change', () => {
-    if (input.value !== '' && !input.reportValidity()) return;
-    if (input.value !== '') onvalue(numberOf(input));
-    else input.value = local(written(last));
+    if (input.value === '') input.value = local(written(last));
+    else if (!input.checkValidity()) restoreField(input, local(written(last)));
+    else onvalue(numberOf(input));
   });
   return {
     input,

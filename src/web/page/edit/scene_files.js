@@ -93,7 +93,7 @@ export function createFiles(lab, choice) {
   /* Whether the current scene may be replaced: it is saved, or the user agrees. Undo restores it while the
    * laboratory runs. */
   async function mayLeave() {
-    if (!lab.state || lab.state.saved) return true;
+    if (!lab.state?.unsaved) return true;
     const about = { name: lab.state.file || say('This scene') };
     const answer = await dialog({
       title: 'Unsaved changes',

@@ -4,6 +4,7 @@
  *   createMotion(lab) -> {node}                      what `cuvette motion` prints */
 
 import { say } from '../shared/language.js';
+import { createRenewal } from '../shared/renewal.js';
 import { button, digits, download, element, notice, replace, svg, table } from '../shared/ui.js';
 
 const WIDTH = 320;
@@ -112,7 +113,8 @@ function shown({ name, level, integrator, dt_s: step, values }) {
 
 export function createMotion(lab) {
   const result = element('div', { class: 'slime-motion', 'aria-live': 'polite' });
-  const measure = button('Measure', act, { icon: 'ruler', small: true, kind: 'primary' });
+  const renewal = createRenewal(lab, result, act);
+  const measure = button('Measure', renewal.run, { icon: 'ruler', small: true, kind: 'primary' });
   const stop = button('Stop', () => lab.post('/api/motion/stop', {}).catch(lab.fail), { icon: 'stop', small: true });
   const node = element(
     'div',
@@ -125,6 +127,7 @@ export function createMotion(lab) {
         'at most 50 s.',
     }),
     element('div', { class: 'buttons' }, measure, stop),
+    renewal.node,
     result,
   );
   stop.disabled = true;
@@ -138,11 +141,14 @@ export function createMotion(lab) {
     try {
       const { slimes, csv } = await lab.get('/api/motion');
       replace(result, slimes.map(shown), save(csv));
+      return true;
     } catch (error) {
       replace(result, notice(error.message, { kind: 'error', remedy: error.remedy }));
+      return false;
+    } finally {
+      measure.disabled = false;
+      stop.disabled = true;
     }
-    measure.disabled = false;
-    stop.disabled = true;
   }
 
   function save(csv) {

@@ -4,6 +4,7 @@
  *   numberInput({min, max, step, ..attributes}) -> input     the input of a number field; arrow keys change it by a
  *                                                            step; step 'any' means 1
  *   numberOf(input)                                          its number; NaN for an empty field or another text
+ *   restoreField(input, text)                                marks a wrong entry, gives its reason, and restores the text
  *   scale({min, max, step, logFrom})                         the positions of a slider */
 
 import { element, gesture, gestures, unique } from './elements.js';
@@ -93,13 +94,33 @@ function frame(label, input, unit) {
   );
 }
 
+/* A wrong entry is marked, and the last right one restored, with the reason until the next entry. */
+export function restoreField(input, text) {
+  const place = input.closest('.field, .param, .camera-field') || input.parentElement;
+  const reason = input.validationMessage || problem(input);
+  const typed = input.value;
+  forgive(input);
+  input.value = text;
+  input.setCustomValidity('');
+  input.setAttribute('aria-invalid', 'true');
+  const why = say('{typed} was not taken: {reason} The field has its last value again.', { typed, reason });
+  place.append(element('p', { class: 'field-problem', role: 'alert', text: why }));
+  input.addEventListener('input', () => forgive(input), { once: true });
+}
+
+function forgive(input) {
+  const place = input.closest('.field, .param, .camera-field') || input.parentElement;
+  input.removeAttribute('aria-invalid');
+  place.querySelector(':scope > .field-problem')?.remove();
+}
+
 export function number({ label, value, min, max, step, unit, onchange }) {
   let last = value;
   const input = numberInput({ min, max, step: step ?? 'any', value: shown(value) });
   input.addEventListener('change', () => {
     if (input.value === '' || !input.checkValidity()) {
       if (input.value === '') input.value = shown(last);
-      else input.reportValidity();
+      else restoreField(input, shown(last));
       return;
     }
     last = numberOf(input);
@@ -219,7 +240,10 @@ export function slider({ label, min, max, step = (max - min) / 200, value, logFr
   });
   box.addEventListener('change', () => {
     if (box.value === '') return;
-    if (!box.reportValidity()) return;
+    if (!box.checkValidity()) {
+      restoreField(box, shown(ruler.value(Number(input.value))));
+      return;
+    }
     const next = numberOf(box);
     show(next);
     const once = gesture('number');

@@ -104,6 +104,7 @@ export function createCostMaps(lab) {
 
   function update() {
     draw();
+    below.classList.toggle('stale', Boolean(answer) && !isCurrent());
     if (how.value === 'none') replace(below);
     else if (isCurrent()) show();
     else if (lab.image?.final) ask();

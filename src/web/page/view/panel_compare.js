@@ -257,6 +257,7 @@ function create(root, lab) {
         how.markPixel(null);
       }
       below.firstChild.setAttribute('aria-busy', String(!model.current));
+      below.firstChild.classList.toggle('stale', !model.current);
       shown = model.answer;
       return;
     }
