@@ -1,4 +1,4 @@
-// What the page shows belongs to the scene: old results are marked and renewed, an untouched lesson is not unsaved, and at
+// What the page shows belongs to the scene: old results are renewed, an untouched lesson is not unsaved, and at
 // rest the image has the display's pixels, while it stays the film of the scene.
 const size = { width: 1366, height: 768 };
 
@@ -51,7 +51,7 @@ export const cases = {
     await screen.settled();
     const { pathname, search } = new URL((await sharp).url());
     const width = Number(/\d+$/.exec(search)[0]);
-    t.more(width, 320, 'the width that is asked for');
+    t.more(width, 320, 'the width of the request');
     const image = await screen.page.evaluate(() => ({ ...window.lab.image }));
     t.equal(
       [image.width, image.final, image.film_hash.length],

@@ -70,7 +70,7 @@ static json_t *outline_json(const solid_shape *shape)
     return parts;
 }
 
-/* --- what the page asks for: of a group of many objects only the parameters of those that it shows --- */
+/* --- what the page requests: of a group of many objects only the parameters of those that it shows --- */
 
 enum { GROUP_ALL = 40 }; /* the largest group whose objects are sent with all their parameters */
 
@@ -153,7 +153,7 @@ static bool has_all(const scene *s)
     return all;
 }
 
-/* The objects and one row per parameter that is asked for. opened: the scene that `initial` is read from. NULL when out
+/* The objects and one row per requested parameter. opened: the scene that `initial` is read from. NULL when out
  * of memory. */
 static json_t *scene_json(const scene *s, const scene *opened, uint64_t generation, uint64_t version, const asked *a,
                           const char *words)
@@ -265,7 +265,8 @@ static json_t *scene_delta(const json_t *before, const json_t *after, bool all_r
 }
 
 /* The reply as allocated text: the scene, or only its differences from the generation `since` if that is remembered;
- * -1 for none; all_rows: all its rows. Releases json. Jansson's reference counts are atomic only in some builds, so all uses of the remembered
+ * -1 for none; all_rows: all its rows. Releases json.
+ * Jansson's reference counts are atomic only in some builds, so all uses of the remembered
  * scenes are under the lock. */
 static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since, bool all_rows)
 {

@@ -31,7 +31,7 @@ const NEAR_OF_EYE = 1e-9;
 const ALONG_THE_VIEW = 1e-12;
 
 /* Of a ray with the fraction w of the beam's power, the part of the full width, sqrt w, and the opacity, the cube root
- * of w, as the eye sees the lightness of a luminance w (CIE L*). Both have a least value, so that a line can be seen. */
+ * of w, as the eye sees the lightness of a luminance w (CIE L*). Both have a least value, so that it can be seen. */
 export const inkOf = (weight) => {
   const w = Math.min(1, Math.max(0, weight));
   return { part: Math.max(0.25, Math.sqrt(w)), seen: Math.max(0.12, Math.cbrt(w)) };

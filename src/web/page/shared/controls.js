@@ -4,7 +4,7 @@
  *   numberInput({min, max, step, ..attributes}) -> input     the input of a number field; arrow keys change it by a
  *                                                            step; step 'any' means 1
  *   numberOf(input)                                          its number; NaN for an empty field or another text
- *   restoreField(input, text)                                marks a wrong entry, gives its reason, and restores the text
+ *   restoreField(input, text)                                marks a wrong entry, with its reason; restores the text
  *   scale({min, max, step, logFrom})                         the positions of a slider */
 
 import { element, gesture, gestures, unique } from './elements.js';

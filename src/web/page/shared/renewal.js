@@ -3,7 +3,7 @@
  *
  * exports: createRenewal(lab, result, act) -> {node, run(), changed(), old}
  *   result: the element that holds the result; act() -> promise of whether there is a result now
- *   node: the line to put above the result; run(): computes it; changed(): what was asked for has changed */
+ *   node: the line to put above the result; run(): computes it; changed(): the question has changed */
 
 import { button, element } from './ui.js';
 

@@ -1,13 +1,13 @@
 /* The final image at the display's resolution: while the scene rests, and the image is fitted into the view and thereby
- * enlarged, the program renders it once more with the display's pixels. It is only shown: the image, its hash, files and
- * the readout of pixels are those of the scene's own size. A change ends the frame, so that a drag is not slower.
+ * enlarged, the program renders it once more with the display's pixels. It is only shown: the image, its hash, files
+ * and the readout of pixels are those of the scene's own size. A change ends the frame, so that a drag is not slower.
  * exports: createSharp(lab, view, place, changed) -> {of(shown) -> a bitmap or null, follow(shown)} */
 
 const LATER_MS = 400; /* after the final image */
 const LEAST = 1.2; /* an image that would be enlarged by less stays as it is */
 const MOST = 4; /* times the image's width; more than the program renders */
 const PIXELS_MAX = 16777216;
-const LONGEST_S = 6; /* expected time of the frame; a larger one is not asked for */
+const LONGEST_S = 6; /* expected time of the frame; a larger one is not requested */
 
 export function createSharp(lab, view, place, changed) {
   let sharp = null; /* {serial, bitmap} */
