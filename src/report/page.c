@@ -135,7 +135,7 @@ static void write_live(const char *code, FILE *out)
 #define POLICY "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 /* Nothing can be requested; the laboratory is part of the page. */
 #define LIVE_POLICY                                                                                                \
-    "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; base-uri 'none'; "                        \
+    "default-src 'none'; img-src data: blob:; media-src blob:; style-src 'unsafe-inline'; base-uri 'none'; "       \
     "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src data: blob:; form-action " \
     "'none'"
 

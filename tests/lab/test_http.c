@@ -298,7 +298,7 @@ static void every_reply_has_security_headers(void **state)
         {"GET", "/nothing", ""},
     };
     static const char *const lines[] = {("Content-Security-Policy: default-src 'none'; script-src 'self'; style-src "
-                                         "'self'; img-src 'self' blob: data:; connect-src 'self'; "
+                                         "'self'; img-src 'self' blob: data:; media-src blob:; connect-src 'self'; "
                                          "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"),
                                         "X-Content-Type-Options: nosniff",
                                         "Referrer-Policy: no-referrer",

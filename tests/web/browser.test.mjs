@@ -131,17 +131,9 @@ export const cases = {
       await t.image(screen, `browser-${name.toLowerCase()}`);
     }
     await screen.showPanel('Parameters');
-    await screen.button('Save video').click();
-    const dialog = page.getByRole('dialog', { name: 'Save video' });
-    await dialog.getByText('cuvette lab rod.yaml', { exact: true }).waitFor();
-    const [name, text] = await downloaded(screen, () => dialog.getByRole('button', { name: 'Save the scene' }).click());
-    t.equal(name, 'rod.yaml', 'the name of the scene');
-    t.match(text, /rod/, 'the scene');
-    await t.axe(screen, 'Save video');
     for (const [method, path] of [
       ['GET', '/api/machine'],
       ['GET', '/api/studies'],
-      ['POST', '/api/video'],
     ]) {
       const reply = await lab.ask(method, path);
       t.equal(reply.status, 501, `${method} ${path}`);

@@ -2,7 +2,6 @@
 
 const REASONS = {
   folder: 'asks before it replaces a file of a folder on the machine',
-  films: 'renders films, which the program does',
   file: 'is about files that the program writes, without the laboratory',
   rescue: 'is about files that rescue unsaved scenes',
   server: 'is about the server: its connections, clients, tabs and end',
@@ -40,7 +39,6 @@ const TABLE = {
   },
   rescue: REASONS.rescue,
   studies: REASONS.studies,
-  video: REASONS.films,
 };
 
 /** Why a case is skipped; null: it is run. */

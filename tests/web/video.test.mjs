@@ -1,187 +1,183 @@
-// Videos: that of a parameter has the frames of `cuvette render`, that of a slime is the file of `cuvette animate`;
-// progress, stop, refusals, and the dialog Save video.
-import { readFile, writeFile } from 'node:fs/promises';
-import { join } from 'node:path';
-import { readPng } from './png.mjs';
-import { difference } from './screen.mjs';
+// Videos recorded in the browser: number, size and times of the frames, which show what the image and the drawing over
+// it show; stop, wrong entries, and the scene as before.
+import { readFile } from 'node:fs/promises';
 
-const SCENE = 'scenes/rod.yaml';
-const SMALL = { 'render.width': 120, 'render.height': 90 };
-const sets = (values) => Object.entries(values).flatMap(([path, value]) => ['--set', `${path}=${value}`]);
+const SIZE = [160, 120];
 
-/** Waits for the end of the video; the state's `video`. */
-async function ended(lab) {
-  for (;;) {
-    const { video } = await lab.get('/api/state');
-    if (!video.running) return video;
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
+async function opened(t, scene, values = {}) {
+  const lab = await t.lab(scene);
+  const screen = await t.open(lab);
+  const { generation } = await lab.post('/api/set', {
+    set: { 'render.width': SIZE[0], 'render.height': SIZE[1], ...values },
+  });
+  await screen.settled(generation);
+  return { lab, screen };
 }
 
-const fileOf = async (lab) => Buffer.from((await lab.ask('GET', '/api/video/file')).bytes);
-
-/** The chunks of a PNG file as [type, bytes with length and CRC, data]. */
-function chunks(bytes) {
-  const list = [];
-  for (let at = 8; at < bytes.length;) {
-    const size = bytes.readUInt32BE(at);
-    list.push([
-      bytes.toString('latin1', at + 4, at + 8),
-      bytes.subarray(at, at + 12 + size),
-      bytes.subarray(at + 8, at + 8 + size),
-    ]);
-    at += 12 + size;
-  }
-  return list;
+async function dialog(screen, kind, numbers) {
+  await screen.button('Save video').click();
+  const box = screen.page.getByRole('dialog', { name: 'Save video' });
+  await box.getByRole('radiogroup', { name: 'What changes' }).getByText(kind, { exact: true }).click();
+  for (const [name, value] of Object.entries(numbers))
+    if (name === 'Parameter') await box.getByRole('combobox', { name }).fill(value);
+    else await box.getByLabel(name, { exact: true }).fill(value);
+  return box;
 }
 
-/** The pixels of each frame of an animated PNG, compressed. */
-function frames(bytes) {
-  const list = [];
-  for (const [type, , data] of chunks(bytes)) {
-    if (type === 'fcTL') list.push([]);
-    if (type === 'IDAT') list.at(-1).push(data);
-    if (type === 'fdAT') list.at(-1).push(data.subarray(4));
-  }
-  return list.map((parts) => Buffer.concat(parts));
+async function recorded(screen, box) {
+  await box.getByRole('button', { name: 'Record' }).click();
+  await box.getByLabel('The video').waitFor();
+  const [saved] = await Promise.all([
+    screen.page.waitForEvent('download'),
+    box.getByRole('button', { name: 'Save file' }).click(),
+  ]);
+  return { name: saved.suggestedFilename(), bytes: await readFile(await saved.path()) };
 }
 
-const pixelsOf = (png) =>
-  Buffer.concat(
-    chunks(png)
-      .filter(([type]) => type === 'IDAT')
-      .map(([, , data]) => data),
+/** The image of an index as the page saves it, with its rays. */
+async function withRays(lab, screen, ior) {
+  await lab.post('/api/set', { set: { 'liquid.ior': ior } }).then((reply) => screen.settled(reply.generation));
+  await screen.button('Save image').click();
+  const box = screen.page.getByRole('dialog', { name: 'Save image' });
+  await box.getByLabel('With rays, angles and ruler').check();
+  const [saved] = await Promise.all([
+    screen.page.waitForEvent('download'),
+    box.getByRole('button', { name: 'Save' }).click(),
+  ]);
+  return readFile(await saved.path());
+}
+
+/** Plays the video of the dialog: its length and size, how many different frames there are in the middle of each
+ * frame's time, and the mean difference of frame `at` to an image, 0..255. */
+const played = (screen, frames, fps, at, png) =>
+  screen.page.evaluate(
+    async ([frames, fps, at, png]) => {
+      const video = document.querySelector('dialog video');
+      if (video.readyState < 1) await new Promise((resolve) => video.addEventListener('loadedmetadata', resolve));
+      const { videoWidth: width, videoHeight: height } = video;
+      const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+      const pixels = (source) => {
+        context.drawImage(source, 0, 0);
+        return context.getImageData(0, 0, width, height).data;
+      };
+      const shots = [];
+      for (let i = 0; i < frames; i++) {
+        video.currentTime = (i + 0.5) / fps;
+        await new Promise((resolve) => video.addEventListener('seeked', resolve, { once: true }));
+        shots.push(pixels(video));
+      }
+      const difference = (a, b) => a.reduce((sum, each, i) => sum + Math.abs(each - b[i]), 0) / a.length;
+      const steps = shots.slice(1).map((shot, i) => difference(shot, shots[i]));
+      const wanted = pixels(await createImageBitmap(new Blob([Uint8Array.from(atob(png), (c) => c.charCodeAt(0))])));
+      return {
+        size: [width, height],
+        duration: video.duration,
+        least: Math.min(...steps),
+        own: difference(shots[at], wanted),
+        other: difference(shots[at === 0 ? frames - 1 : 0], wanted),
+      };
+    },
+    [frames, fps, at, Buffer.from(png).toString('base64')],
   );
 
-async function refused(t, lab, body, code, words) {
-  const reply = await lab.ask('POST', '/api/video', body);
-  t.equal(reply.status, code, JSON.stringify(body));
-  t.match(Buffer.from(reply.bytes).toString(), words, JSON.stringify(body));
-}
-
 export const cases = {
-  'the film of a parameter has the frames of the command line': async (t) => {
-    const lab = await t.lab(SCENE);
-    await lab.post('/api/set', { set: SMALL });
-    await lab.post('/api/video', { parameter: 'liquid.ior', from: 1, to: 1.6, frames: 5, fps: 10, format: 'apng' });
-    const video = await ended(lab);
-    t.equal([video.done, video.frames, video.error], [5, 5, null], 'frames');
-    const film = await fileOf(lab);
-    t.equal(film.length, video.bytes, 'bytes');
-    const shown = frames(film);
-    t.equal(shown.length, 5, 'frames of the file');
-    for (const [i, ior] of [1, 1.15, 1.3, 1.45, 1.6].entries()) {
-      await lab.run('render', SCENE, '-o', 'frame.png', ...sets({ ...SMALL, 'liquid.ior': ior }));
-      t.check(pixelsOf(await readFile(join(lab.folder, 'frame.png'))).equals(shown[i]), `frame ${i} differs`);
-    }
-    const control = chunks(film).find(([type]) => type === 'fcTL')[2];
-    t.equal([control.readUInt16BE(20), control.readUInt16BE(22)], [1, 10], 'time of a frame');
-    const numbers = chunks(film)
-      .filter(([type]) => type === 'fcTL' || type === 'fdAT')
-      .map(([, , data]) => data.readUInt32BE(0));
-    t.equal(
-      numbers,
-      numbers.map((_, i) => i),
-      'sequence numbers',
-    );
-
-    // Integers are rounded.
-    await lab.post('/api/video', { parameter: 'render.depth', from: 1, to: 4, frames: 3, format: 'y4m' });
-    t.equal((await ended(lab)).error, null, 'a film of an integer');
-    t.match((await fileOf(lab)).toString('latin1', 0, 60), /^YUV4MPEG2 W120 H90 F25:1 /, 'head');
-  },
-
-  'the film of a slime is the file of cuvette animate': async (t) => {
-    const scene = 'scenes/slime.yaml';
-    const lab = await t.lab(scene);
-    await lab.post('/api/set', { set: { ...SMALL, 'toy.level': 2 } });
-    const words = ['animate', scene, '--duration', '0.4', '--fps', '20', ...sets({ ...SMALL, 'toy.level': 2 })];
-    for (const format of ['y4m', 'apng']) {
-      await lab.post('/api/video', { duration_s: 0.4, fps: 20, format });
-      t.equal((await ended(lab)).done, 8, 'frames');
-      await lab.run(...words, '-o', `film.${format}`);
-      t.check((await fileOf(lab)).equals(await readFile(join(lab.folder, `film.${format}`))), `film.${format} differs`);
-    }
-  },
-
-  'a film is stopped, and wrong ones are refused': async (t) => {
-    const lab = await t.lab(SCENE);
-    const sweep = { parameter: 'liquid.ior', from: 1, to: 1.6, frames: 400 };
-    t.equal((await lab.ask('GET', '/api/video/file')).status, 404, 'no film yet');
-    t.equal((await lab.ask('POST', '/api/video/stop', {})).status, 409, 'nothing to stop');
-    await refused(t, lab, {}, 409, /it has no slime/);
-    await refused(t, lab, { ...sweep, frames: 1001 }, 400, /give 2 to 1000 frames/);
-    await refused(t, lab, { ...sweep, frames: 2.5 }, 400, /give 2 to 1000 frames/);
-    await refused(t, lab, { ...sweep, frames: 1000 }, 400, /more than 1 GiB/);
-    await refused(t, lab, { ...sweep, parameter: 'liquid.iro' }, 400, /no such parameter/);
-    await refused(t, lab, { ...sweep, parameter: 'camera.position' }, 400, /not a number/);
-    await refused(t, lab, { ...sweep, parameter: 'render.width', from: 800, to: 400 }, 400, /size of the frames/);
-    await refused(t, lab, { ...sweep, to: -1 }, 400, /liquid.ior/);
-    await refused(t, lab, { ...sweep, fps: 0 }, 400, /from 1 to 240/);
-    await refused(t, lab, { ...sweep, format: 'gif' }, 400, /use y4m or apng/);
-    await lab.post('/api/video', sweep);
-    await refused(t, lab, sweep, 409, /another video/);
-    await lab.post('/api/video/stop', {});
-    const video = await ended(lab);
-    t.check(video.done < 400 && video.bytes === null && video.error === null, 'stopped');
-    t.equal((await lab.ask('GET', '/api/video/file')).status, 404, 'no file of a stopped film');
-  },
-
-  'the dialog renders a film, plays it and saves it': async (t) => {
-    for (const dark of [false, true]) {
-      const lab = await t.lab(SCENE);
-      const screen = await t.open(lab, { width: 1366, height: 900, dark });
-      await screen.button('Save video').click();
-      const box = screen.page.getByRole('dialog', { name: 'Save video' });
-      await box.getByRole('combobox', { name: 'Parameter' }).fill('liquid.ior');
-      await box
-        .getByRole('textbox', { name: 'To' })
-        .or(box.getByRole('spinbutton', { name: 'To' }))
-        .fill('1,6');
-      await box.getByLabel('Frames', { exact: true }).fill('6');
-      await box.getByText(/6 frames, 240 ms long; about/).waitFor();
-      await box.getByRole('button', { name: 'Render' }).click();
-      await box.getByRole('img', { name: 'The video' }).waitFor();
-      await box.getByText(/6 frames in/).waitFor();
-      await screen.quiet();
-      await screen.until(() => document.querySelector('.video-image').naturalWidth === 800);
-      await t.axe(screen, 'the dialog Save video');
-      await t.image(screen, `film-${dark ? 'dark' : 'light'}`);
-      const [saved] = await Promise.all([
-        screen.page.waitForEvent('download'),
-        box.getByRole('button', { name: 'Save file' }).click(),
-      ]);
-      t.equal(saved.suggestedFilename(), 'rod-video.png', 'name of the video');
-      t.check((await readFile(await saved.path())).equals(await fileOf(lab)), 'the saved film is that of the server');
-      await box.getByRole('button', { name: 'Close' }).first().click();
-      await screen.button('Save video').click();
-      t.equal(await box.getByRole('combobox', { name: 'Parameter' }).inputValue(), 'liquid.ior', 'kept parameter');
-    }
-  },
-
-  'a browser plays the frames of the file': async (t) => {
-    const lab = await t.lab(SCENE);
-    await lab.post('/api/set', { set: SMALL });
-    await lab.post('/api/video', { parameter: 'liquid.ior', from: 1, to: 1.6, frames: 3, fps: 2, format: 'apng' });
-    await ended(lab);
-    const screen = await t.open(lab);
-    const last = await screen.page.evaluate(async () => {
-      const reply = await fetch('/api/video/file');
-      const decoder = new ImageDecoder({ data: await reply.arrayBuffer(), type: 'image/png' });
-      await decoder.tracks.ready;
-      const { image } = await decoder.decode({ frameIndex: 2 });
-      const canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight);
-      canvas.getContext('2d').drawImage(image, 0, 0);
-      const blob = await canvas.convertToBlob();
-      const text = String.fromCharCode(...new Uint8Array(await blob.arrayBuffer()));
-      return { count: decoder.tracks.selectedTrack.frameCount, duration: image.duration, png: btoa(text) };
+  'a parameter: the frames are the images of its values, with the rays': async (t) => {
+    const { lab, screen } = await opened(t, 'scenes/rod.yaml');
+    await lab.post('/api/objects', { kind: 'beam' });
+    const { generation } = await lab.post('/api/set', {
+      set: { 'laser.position': [-2.5, 1.6, -0.4], 'laser.target': [0, 1.4, -0.4] },
     });
-    t.equal([last.count, last.duration], [3, 500000], 'frames, and microseconds of one');
-    await writeFile(join(lab.folder, 'last.png'), Buffer.from(last.png, 'base64'));
-    await lab.run('render', SCENE, '-o', 'frame.png', ...sets({ ...SMALL, 'liquid.ior': 1.6 }));
-    const [shown, written] = await Promise.all(
-      ['last.png', 'frame.png'].map(async (name) => readPng(await readFile(join(lab.folder, name)))),
-    );
-    t.equal(difference(shown, written), 0, 'share of pixels of the last frame that differ');
+    await screen.settled(generation);
+    await screen.page.locator('.layer-bench .bench-ray').nth(3).waitFor({ state: 'attached' });
+    const drawn = await withRays(lab, screen, 1.6);
+    await lab.post('/api/set', { set: { 'liquid.ior': 1.33 } }).then((reply) => screen.settled(reply.generation));
+    const before = await lab.get('/api/state');
+    const box = await dialog(screen, 'A parameter', {
+      Parameter: 'liquid.ior',
+      From: '1',
+      To: '1,6',
+      Frames: '6',
+      Rate: '10',
+    });
+    await box.getByLabel('With rays, angles and ruler').check();
+    await box.getByText(/6 frames, 600 ms long/).waitFor();
+    const file = await recorded(screen, box);
+    t.equal(file.name, 'rod.webm', 'name');
+    t.equal(file.bytes.readUInt32BE(0), 0x1a45dfa3, 'head of a WebM file');
+    const after = await lab.get('/api/state');
+    t.equal(after.undo, before.undo, 'the last step of undo is that from before');
+    t.equal((await lab.get('/api/scene')).params.find(({ path }) => path === 'liquid.ior').value, 1.33, 'the value');
+    await t.axe(screen, 'Save video');
+    await t.image(screen, 'video');
+
+    const film = await played(screen, 6, 10, 5, drawn);
+    t.equal(film.size, SIZE, 'size');
+    t.check(Math.abs(film.duration - 0.6) < 0.002, `0.6 s long: ${film.duration}`);
+    t.check(film.least > 0.05, `every frame differs from the one before: ${film.least}`);
+    t.check(film.own < 3 && film.own < film.other / 2, `the last frame: ${film.own}, the first: ${film.other}`);
+  },
+
+  'the camera orbits once, and is where it was': async (t) => {
+    const { lab, screen } = await opened(t, 'scenes/rod.yaml');
+    const before = await lab.get('/api/state');
+    const first = (await lab.ask('GET', '/api/image.png?wait=1')).bytes;
+    const box = await dialog(screen, 'The camera orbits', { Angle: '360', Frames: '4', Rate: '2' });
+    await recorded(screen, box);
+    const film = await played(screen, 4, 2, 0, first);
+    t.check(Math.abs(film.duration - 2) < 0.002 && film.least > 1, `${film.duration} s, ${film.least}`);
+    t.check(film.own < 3 && film.own < film.other / 2, `the first frame: ${film.own}, the last: ${film.other}`);
+    const after = await lab.get('/api/state');
+    t.equal([after.camera, after.saved, after.undo], [before.camera, before.saved, before.undo], 'view and scene');
+  },
+
+  'the slime moves from rest; wrong entries are refused; a recording is stopped': async (t) => {
+    const { lab, screen } = await opened(t, 'scenes/slime.yaml', { 'toy.level': 2 });
+    const box = await dialog(screen, 'The slime moves', { Duration: '0,4', Rate: '10' });
+    await recorded(screen, box);
+    const { generation } = await lab.post('/api/set', { set: { 'toy.time_s': 0.3 } });
+    await screen.settled(generation);
+    const film = await played(screen, 4, 10, 3, (await lab.ask('GET', '/api/image.png?wait=1')).bytes);
+    t.check(film.own < 3 && film.own < film.other, `the last frame: ${film.own}, the first: ${film.other}`);
+
+    await box.getByRole('radiogroup', { name: 'What changes' }).getByText('A parameter', { exact: true }).click();
+    for (const [name, value, words] of [
+      ['Parameter', 'camera.position', /whose value is a number/],
+      ['Parameter', 'render.width', null],
+      ['From', '160', null],
+      ['To', '', /Enter a number/],
+      ['To', '80', null],
+      ['Frames', '1001', /2 to 1000 frames/],
+      ['Frames', '3', /the size of the frames changes/],
+    ]) {
+      const input = name === 'Parameter' ? box.getByRole('combobox', { name }) : box.getByLabel(name, { exact: true });
+      await input.fill(value);
+      if (!words) continue;
+      await box.getByRole('button', { name: 'Record' }).click();
+      await box.getByText(words).waitFor();
+    }
+    await box.getByLabel('To', { exact: true }).fill('160');
+    await box.getByLabel('Frames', { exact: true }).fill('1000');
+    await box.getByRole('button', { name: 'Record' }).click();
+    await box.getByText(/[1-9] of 1000 frames, about/).waitFor();
+    await box.getByRole('button', { name: 'Stop' }).click();
+    await box.getByText('Stopped.').waitFor();
+    t.equal(await box.getByLabel('The video').count(), 0, 'no file of a stopped video');
+    t.equal((await lab.get('/api/scene')).params.find(({ path }) => path === 'render.width').value, 160, 'the width');
+  },
+
+  'without a video encoder the frames are played to a recorder': async (t) => {
+    const { screen } = await opened(t, 'scenes/rod.yaml');
+    await screen.page.evaluate(() => delete globalThis.VideoEncoder);
+    const box = await dialog(screen, 'A parameter', {
+      Parameter: 'liquid.ior',
+      From: '1',
+      To: '2',
+      Frames: '5',
+      Rate: '5',
+    });
+    await box.getByText('The times of the frames are those of a clock').waitFor();
+    const file = await recorded(screen, box);
+    t.equal(file.bytes.readUInt32BE(0), 0x1a45dfa3, 'head of a WebM file');
+    t.check(file.bytes.length > 1000, `${file.bytes.length} bytes`);
   },
 };

@@ -82,7 +82,8 @@ bool http_is_origin(const char *text)
 static status make_content_policy(http_server *s, diagnostic *why)
 {
     static const char format[] =
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; media-src blob:; "
+        "connect-src 'self'; "
         "base-uri 'none'; form-action 'none'; frame-ancestors%s";
     char *origins = strdup(s->settings.frame_origin_count ? "" : " 'none'");
     for (size_t i = 0; origins && i < s->settings.frame_origin_count; i++) {

@@ -14,9 +14,9 @@ FOLDERS = ('scenes', 'hands', 'lessons')
 READ_BY_SCENES = ('.yaml', '.lesson')
 # A link brings a stranger's scene: nothing may be loaded or run but the page
 # and what is next to it.
-POLICY = ("default-src 'none'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; script-src 'self' "
-          "'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; connect-src 'self' data: blob:; "
-          "base-uri 'none'; form-action 'none'")
+POLICY = ("default-src 'none'; img-src 'self' data: blob:; media-src blob:; style-src 'self' 'unsafe-inline'; "
+          "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; "
+          "connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'")
 META = (f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />\n'
         '<meta name="cuvette-engine" content="browser" />')
 TARGET = '--target=es2022'

@@ -1,119 +1,139 @@
-/* The dialog Save video: renders a parameter that changes from frame to frame, or the moving slime, into one file. The
- * dialog may be closed meanwhile. Its fields keep their values until the page is closed.
+/* The dialog Save video: shows frame after frame of a parameter that changes, of a camera that orbits or of the slime
+ * that moves, and records them in the browser. The scene and the view are then as before. Its fields keep their values
+ * until the page is closed.
  * exports: saveVideo(lab) */
 
-import { needsProgram } from '../shared/commands.js';
 import { numberInput, numberOf } from '../shared/controls.js';
-import { showImage } from '../shared/images.js';
-import { button, choice, count, dialog, download, element, field, notice, replace, seconds } from '../shared/ui.js';
+import { say } from '../shared/language.js';
+import { recordings } from '../shared/recorder.js';
+import {
+  button,
+  checkbox,
+  choice,
+  count,
+  dialog,
+  download,
+  element,
+  field,
+  memory,
+  notice,
+  replace,
+  seconds,
+} from '../shared/ui.js';
 import { createParamPicker } from './param_picker.js';
+import { filmed } from './video_film.js';
+import { slimes, videoFrames } from './video_frames.js';
 
-const FORMATS = [
-  ['apng', 'Animated PNG: browsers play it'],
-  ['y4m', 'YUV4MPEG2: for video programs, such as ffmpeg'],
-];
-const ENDINGS = { apng: 'png', y4m: 'y4m' };
+const FRAMES_MAX = 1000;
 const remembered = {
   what: 'sweep',
   parameter: '',
   from: '',
   to: '',
+  degrees: '360',
+  duration: '4',
   frames: '50',
-  duration: '',
   fps: '25',
-  format: 'apng',
+  format: 'WebM',
 };
 
-/* A video takes minutes, and more memory for its frames than a browser has. */
-function saveElsewhere(lab) {
-  const motion = lab.slime ? [(file) => `cuvette animate ${file} -o video.apng`] : [];
-  dialog({
-    title: 'Save video',
-    content: needsProgram(lab, 'Videos are rendered by the program on a computer, not in a browser.', [
-      ...motion,
-      (file) => `cuvette lab ${file}`,
-    ]),
-  });
-}
-
 export function saveVideo(lab) {
-  if (lab.engine.kind === 'server') createForm(lab);
-  else saveElsewhere(lab);
+  const formats = recordings();
+  if (formats.length) createForm(lab, formats);
+  else
+    dialog({
+      title: 'Save video',
+      content: notice('This browser records no videos.', { remedy: 'use a newer Chromium, Firefox or Safari' }),
+    });
 }
 
-function createForm(lab) {
+function createForm(lab, formats) {
   const picker = createParamPicker(lab, { label: 'Parameter', onchoose: chosen });
   const numbers = {
     from: numberInput({ value: remembered.from }),
     to: numberInput({ value: remembered.to }),
-    frames: numberInput({ value: remembered.frames, min: 2, max: 1000, step: 1 }),
-    duration: numberInput({ value: remembered.duration, min: 0, placeholder: 'default' }),
+    degrees: numberInput({ value: remembered.degrees, min: -3600, max: 3600 }),
+    duration: numberInput({ value: remembered.duration, min: 0 }),
+    frames: numberInput({ value: remembered.frames, min: 2, max: FRAMES_MAX, step: 1 }),
     fps: numberInput({ value: remembered.fps, min: 1, max: 240, step: 1 }),
   };
+  const kinds = [
+    ['sweep', 'A parameter'],
+    ['orbit', 'The camera orbits'],
+    ...(slimes(lab).length ? [['motion', 'The slime moves']] : []),
+  ];
   const what = choice({
     label: 'What changes',
     radios: true,
-    value: lab.slime ? remembered.what : 'sweep',
-    choices: [
-      ['sweep', 'A parameter'],
-      ['motion', 'The slime moves'],
-    ],
+    value: kinds.some(([kind]) => kind === remembered.what) ? remembered.what : 'sweep',
+    choices: kinds,
     onchange: show,
   });
-  const format = choice({ label: 'Format', choices: FORMATS, value: remembered.format, onchange: show });
+  const format = choice({
+    label: 'Format',
+    radios: true,
+    value: formats.some(({ name }) => name === remembered.format) ? remembered.format : formats[0].name,
+    choices: formats.map(({ name }) => [name, name]),
+    onchange: show,
+  });
+  const over = checkbox('With rays, angles and ruler', memory.get('image.over', true), (on) =>
+    memory.set('image.over', on),
+  );
   const about = element('p', { class: 'hint' });
-  const sweep = element(
-    'div',
-    { class: 'video-part' },
-    picker.node,
-    about,
-    field('From', numbers.from),
-    field('To', numbers.to),
-    field('Frames', numbers.frames),
-  );
-  const motion = element(
-    'div',
-    { class: 'video-part' },
-    field('Duration', numbers.duration, {
-      unit: 's',
-      hint: 'from rest, with its hand script; default: 2 s more than the script, or 4 s without one',
-    }),
-  );
+  const parts = {
+    sweep: element(
+      'div',
+      { class: 'video-part' },
+      picker.node,
+      about,
+      field('From', numbers.from),
+      field('To', numbers.to),
+    ),
+    orbit: field('Angle', numbers.degrees, { unit: '°', hint: 'about the pivot, to the right' }),
+    motion: field('Duration', numbers.duration, { unit: 's', hint: 'from rest, with its hand script' }),
+  };
+  const frames = field('Frames', numbers.frames);
   const length = element('p', { class: 'hint video-length' });
+  const exact = element('p', { class: 'hint', text: 'The times of the frames are those of a clock, not exact.' });
   const trouble = element('div');
   const bar = element('progress', { max: 1, value: '0', 'aria-label': 'frames done' });
   const words = element('p', { class: 'hint', role: 'status' });
   const result = element('div', { class: 'video-part' });
-  const render = button('Render', act, { icon: 'play', kind: 'primary' });
-  const stop = button('Stop', () => lab.post('/api/video/stop', {}).catch(fail), { icon: 'stop' });
+  const record = button('Record', act, { icon: 'play', kind: 'primary' });
+  const stop = button('Stop', () => running?.abort(), { icon: 'stop' });
   const shown = dialog({
     title: 'Save video',
     content: element(
       'div',
       { class: 'video-form' },
       what.node,
-      sweep,
-      motion,
+      Object.values(parts),
+      frames,
       field('Rate', numbers.fps, { unit: 'frames/s' }),
       format.node,
+      exact,
+      over.node,
       length,
       trouble,
-      element('div', { class: 'buttons' }, render, stop),
+      element('div', { class: 'buttons' }, record, stop),
       bar,
       words,
       result,
     ),
   });
-  const ends = [lab.on('video', progress), lab.on('state', () => progress(lab.state.video)), lab.on('image', show)];
+  let running = null; /* an AbortController */
+  let address = null;
+  const end = lab.on('image', show);
   shown.closed.then(() => {
-    for (const end of ends) end();
+    end();
+    running?.abort();
+    if (address) URL.revokeObjectURL(address);
     keep();
   });
-  what.node.hidden = !lab.slime;
   picker.input.value = remembered.parameter;
   for (const input of Object.values(numbers)) input.addEventListener('input', show);
   chosen(picker.row);
-  progress(lab.state?.video);
+  progress();
 
   function keep() {
     Object.assign(remembered, { what: what.value, parameter: picker.input.value, format: format.value });
@@ -126,41 +146,55 @@ function createForm(lab) {
     show();
   }
 
-  function frames() {
-    return what.value === 'sweep' ? numberOf(numbers.frames) : numberOf(numbers.duration) * numberOf(numbers.fps);
+  function framesWanted() {
+    if (what.value !== 'motion') return numberOf(numbers.frames);
+    return Math.max(1, Math.round(numberOf(numbers.duration) * numberOf(numbers.fps)));
   }
 
   /* The time is extrapolated from the current image: frames differ. */
   function show() {
-    sweep.hidden = what.value !== 'sweep';
-    motion.hidden = what.value === 'sweep';
-    const n = Math.max(1, Math.round(frames()));
+    if (running) return;
+    for (const [kind, node] of Object.entries(parts)) node.hidden = kind !== what.value;
+    frames.hidden = what.value === 'motion';
+    exact.hidden = chosenFormat().exact;
+    const [n, fps] = [framesWanted(), numberOf(numbers.fps)];
     const one = lab.image?.final ? lab.image.wall_s : NaN;
-    const { full_width: width, full_height: height } = lab.image || {};
-    const parts = [
-      Number.isFinite(n) && `${count(n)} frames, ${seconds(n / numberOf(numbers.fps))} long`,
-      Number.isFinite(n * one) && `about ${seconds(n * one)} if each takes as long as the current image`,
-      format.value === 'y4m' && Number.isFinite(n * width) && `${count(1.5 * n * width * height)}B`,
-    ];
-    length.textContent = parts.filter(Boolean).join('; ');
+    length.textContent = !(n / fps > 0)
+      ? ''
+      : Number.isFinite(n * one)
+        ? say('{n} frames, {length} long; about {time} if each takes as long as the current image', {
+            n: count(n),
+            length: seconds(n / fps),
+            time: seconds(n * one),
+          })
+        : say('{n} frames, {length} long', { n: count(n), length: seconds(n / fps) });
   }
 
-  /* The request, or null with the first wrong field focused. */
+  function chosenFormat() {
+    return formats.find(({ name }) => name === format.value);
+  }
+
+  /* What to record, or null with the first wrong field focused. */
   function request() {
-    const body = { fps: numberOf(numbers.fps), format: format.value };
-    const names = what.value === 'sweep' ? ['from', 'to', 'frames', 'fps'] : ['fps'];
-    if (what.value === 'sweep' && !picker.row) return wrong('Choose a parameter of the scene.', picker.input);
-    for (const name of names)
-      if (!Number.isFinite(numberOf(numbers[name]))) return wrong('Enter a number.', numbers[name]);
-    if (what.value === 'sweep')
-      return {
-        ...body,
-        parameter: picker.row.path,
-        from: numberOf(numbers.from),
-        to: numberOf(numbers.to),
-        frames: numberOf(numbers.frames),
-      };
-    return numbers.duration.value === '' ? body : { ...body, duration_s: numberOf(numbers.duration) };
+    const fps = numberOf(numbers.fps);
+    const needed = { sweep: ['from', 'to', 'frames'], orbit: ['degrees', 'frames'], motion: ['duration'] }[what.value];
+    if (what.value === 'sweep' && typeof picker.row?.value !== 'number')
+      return wrong(say('Choose a parameter of the scene whose value is a number.'), picker.input);
+    for (const name of [...needed, 'fps'])
+      if (!Number.isFinite(numberOf(numbers[name]))) return wrong(say('Enter a number.'), numbers[name]);
+    if (!(fps >= 1 && fps <= 240)) return wrong(say('Enter 1 to 240 frames per second.'), numbers.fps);
+    const n = framesWanted();
+    if (!(Number.isInteger(n) && n >= 2 && n <= FRAMES_MAX))
+      return wrong(say('A video has 2 to {most} frames.', { most: FRAMES_MAX }), numbers[needed.at(-1)]);
+    return {
+      kind: what.value,
+      row: picker.row,
+      from: numberOf(numbers.from),
+      to: numberOf(numbers.to),
+      degrees: numberOf(numbers.degrees),
+      count: n,
+      fps,
+    };
   }
 
   function wrong(text, input) {
@@ -169,55 +203,61 @@ function createForm(lab) {
     return null;
   }
 
-  function fail(error) {
-    replace(trouble, notice(error.message, { kind: 'error', remedy: error.remedy }));
-  }
-
   async function act() {
-    const body = request();
-    if (!body) return;
+    const wanted = request();
+    if (!wanted) return;
     keep();
     replace(trouble);
+    replace(result);
+    running = new AbortController();
+    const began = performance.now();
+    progress({ done: 0, of: wanted.count });
     try {
-      progress(await lab.post('/api/video', body));
+      const file = await filmed(lab, videoFrames(lab, wanted), chosenFormat(), {
+        fps: wanted.fps,
+        over: over.value,
+        signal: running.signal,
+        progress: (done) => progress({ done, of: wanted.count, began }),
+      });
+      running = null;
+      progress();
+      if (file) finished(file, wanted.count, (performance.now() - began) / 1000);
+      else words.textContent = say('Stopped.');
     } catch (error) {
-      fail(error);
+      running = null;
+      progress();
+      replace(trouble, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
   }
 
-  function progress(now) {
-    render.disabled = Boolean(now?.running);
-    stop.hidden = bar.hidden = !now?.running;
-    if (now?.running) {
-      bar.value = now.done / now.frames;
-      const left = now.left_s === null ? '' : `, about ${seconds(Math.max(1, Math.round(now.left_s)))} left`;
-      words.textContent = `${now.done} of ${now.frames} frames${left}`;
-    } else {
-      words.textContent = now?.bytes
-        ? `${now.frames} frames in ${seconds(now.wall_s)}; ${count(now.bytes)}B`
-        : now && !now.error
-          ? 'Stopped.'
-          : '';
+  function progress(now = null) {
+    record.disabled = Boolean(now);
+    stop.hidden = bar.hidden = !now;
+    bar.value = now ? now.done / now.of : 0;
+    if (!now) words.textContent = '';
+    else if (!now.done) words.textContent = say('{done} of {of} frames', now);
+    else {
+      const left = ((performance.now() - now.began) / 1000 / now.done) * (now.of - now.done);
+      words.textContent = say('{done} of {of} frames, about {left} left', {
+        ...now,
+        left: seconds(Math.max(1, Math.round(left))),
+      });
     }
-    if (now?.error) fail({ message: now.error.error, remedy: now.error.remedy });
-    finished(now?.bytes ? now : null);
   }
 
-  /* The file changes only with a new video, which has another time. */
-  function finished(video) {
-    const key = video ? `${video.format} ${video.wall_s}` : '';
-    if (result.dataset.key === key) return;
-    result.dataset.key = key;
-    if (!video) return void replace(result);
-    const address = `/api/video/file?of=${video.wall_s}`;
-    const name = `${lab.name()}-video.${ENDINGS[video.format]}`;
-    const image = video.format === 'apng' ? element('img', { class: 'video-image', alt: 'The video' }) : null;
-    if (image) showImage(lab, image, address);
-    const save = async () => download(await lab.engine.address(address), name);
+  function finished(file, frames, taken) {
+    const name = `${lab.name()}.${chosenFormat().ending}`;
+    if (address) URL.revokeObjectURL(address);
+    address = URL.createObjectURL(file);
+    words.textContent = say('{frames} frames in {time}; {size}B', {
+      frames: count(frames),
+      time: seconds(taken),
+      size: count(file.size),
+    });
     replace(
       result,
-      image,
-      button('Save file', () => save().catch(fail), { icon: 'download', kind: 'primary' }),
+      element('video', { controls: true, loop: true, src: address, 'aria-label': 'The video' }),
+      button('Save file', () => download(file, name), { icon: 'download', kind: 'primary' }),
     );
     result.scrollIntoView({ block: 'nearest' });
   }
