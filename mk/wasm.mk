@@ -17,8 +17,8 @@ wasm_without := src/study/% src/engine/study% src/base/below.c src/base/child.c 
   src/measure/hardware_counter.c src/measure/topology_discover.c src/measure/disturbances.c src/measure/levels.c \
   src/scene/assets/mesh_file.c src/base/worker_pool.c
 wasm_web := $(filter-out src/web/http/http.c $(addprefix src/web/http/http_,events.c guard.c library.c request.c \
-  send.c watch.c) $(addprefix src/web/api/,api_studies.c api_study_% api_video.c) \
-  $(addprefix src/web/session/,confine.c figures.c rescue.c studies.c study_files.c videos.c) \
+  send.c watch.c) $(addprefix src/web/api/,api_studies.c api_study_%) \
+  $(addprefix src/web/session/,confine.c figures.c rescue.c studies.c study_files.c) \
   src/web/live/render_worker_thread.c,$(web))
 wasm_sources := $(filter-out $(wasm_without),$(library)) $(kernels) $(wasm_web) $(filter src/wasm/%,$(sources)) \
   $(filter-out src/import/main.c,$(wildcard src/import/*.c))

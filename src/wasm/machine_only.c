@@ -1,9 +1,8 @@
-/* The parts of the laboratory that need a machine: studies, videos, rescued scenes, confinement. In a browser their
+/* The parts of the laboratory that need a machine: studies, rescued scenes, confinement. In a browser their
  * routes return an error that names the command of the program. */
 #include "web/api/api.h"
 #include "web/session/session.h"
 #include "web/session/studies.h"
-#include "web/session/videos.h"
 
 #include <errno.h>
 
@@ -43,26 +42,6 @@ status api_machine(call *c)
     return refuse(c, "a browser does not describe the machine that it runs on", "run: cuvette machine");
 }
 
-static status no_video(call *c)
-{
-    return refuse(c, "videos cannot be written in a browser", "save the scene, and run: cuvette animate FILE.yaml");
-}
-
-status api_video(call *c)
-{
-    return no_video(c);
-}
-
-status api_video_stop(call *c)
-{
-    return no_video(c);
-}
-
-status api_video_file(call *c)
-{
-    return no_video(c);
-}
-
 /* --- functions that the rest of the laboratory calls --- */
 
 status studies_create(lab *l, void (*ended)(lab *l), studies **out, diagnostic *why)
@@ -98,29 +77,6 @@ bool studies_ending(void *st)
 json_t *studies_json(studies *st)
 {
     (void)st;
-    return json_null();
-}
-
-status videos_create(lab *l, videos **out, diagnostic *why)
-{
-    (void)l, (void)why;
-    *out = NULL;
-    return STATUS_OK;
-}
-
-void videos_end(videos *v)
-{
-    (void)v;
-}
-
-void videos_destroy(videos *v)
-{
-    (void)v;
-}
-
-json_t *videos_json(videos *v)
-{
-    (void)v;
     return json_null();
 }
 

@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* The browser loads the page from the site's files, so the module embeds no file. */
 const http_file page_files[1] = {{.name = ""}};
@@ -71,18 +70,6 @@ void http_reply_static(http_reply *r, int code, const char *type, const void *by
     if (copy)
         memcpy(copy, bytes, size);
     http_reply_bytes(r, code, type, copy, size);
-}
-
-void http_reply_file(http_reply *r, int code, const char *type, int file, size_t size)
-{
-    char *bytes = malloc(size + 1);
-    const bool complete = bytes && pread(file, bytes, size, 0) == (ssize_t)size;
-    close(file);
-    if (!complete) {
-        free(bytes);
-        bytes = NULL;
-    }
-    http_reply_bytes(r, code, type, bytes, size);
 }
 
 static void release(http_request *q)

@@ -8,7 +8,6 @@
 #include "web/live/images.h"
 #include "web/session/session.h"
 #include "web/session/studies.h"
-#include "web/session/videos.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -31,12 +30,10 @@ static json_t *state_json(lab *l)
     json_t *state = json_pack("{s:s, s:s}", "version", CUVETTE_VERSION, "engine", engine);
     const bool good =
         state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
-        json_object_update_new(state, json_pack("{s:o, s:o, s:o, s:o, s:{s:i, s:i}}", "slime",
-                                                live_json(render_worker_live(l->render_worker)), "reference",
-                                                reference_image_json(l->reference_image), "study",
-                                                studies_json(l->studies), "video", videos_json(l->videos), "limits",
-                                                "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) ==
-            0 &&
+        json_object_update_new(
+            state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_json(render_worker_live(l->render_worker)),
+                             "reference", reference_image_json(l->reference_image), "study", studies_json(l->studies),
+                             "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0 &&
         rescue_json(l->rescue, state);
     return json_if(state, good);
 }
@@ -160,7 +157,6 @@ static status start(lab *l, diagnostic *why)
          !(l->pixel_maps = pixel_maps_create(settings->level))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, on_study_end, &l->studies, why));
-    THEN(code, videos_create(l, &l->videos, why));
     THEN(code, rescue_create(l, &l->rescue, why));
     THEN(code, serve(l, why));
     return code;
@@ -224,14 +220,11 @@ void lab_stop(lab *l)
         semaphore_close(l->heavy);
     if (l->thumbnails)
         thumbnails_end(l->thumbnails);
-    if (l->videos)
-        videos_end(l->videos);
     if (l->studies)
         studies_end(l->studies);
     if (l->render_worker)
         render_worker_end(l->render_worker);
     http_stop(l->server);
-    videos_destroy(l->videos);
     rescue_destroy(l->rescue, l->leaves_unsaved);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);

@@ -34,8 +34,8 @@ static void stop(void)
 
 static bool is_left_out(const char *method, const char *target)
 {
-    static const char *const parts[] = {"/run",        "/draw",    "/api/video",   "/api/events",
-                                        "/api/motion", "/measure", "/api/realism", "wait="};
+    static const char *const parts[] = {"/run",     "/draw",        "/api/events", "/api/motion",
+                                        "/measure", "/api/realism", "wait="};
     bool left_out = memchr(target, '%', strcspn(target, "?")); /* another spelling of these */
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         left_out = left_out || strstr(target, parts[i]);

@@ -118,9 +118,7 @@ json_t *http_body_json(const http_request *request, http_reply *reply);
 void http_reply_bytes(http_reply *reply, int code, const char *type, void *bytes,
                       size_t size); /* allocated by malloc, owned by the reply; NULL sends 500 */
 void http_reply_static(http_reply *reply, int code, const char *type, const void *bytes,
-                       size_t size); /* bytes must outlive the server */
-void http_reply_file(http_reply *reply, int code, const char *type, int file,
-                     size_t size); /* a regular file, from its start; the reply owns the descriptor */
+                       size_t size);                              /* bytes must outlive the server */
 void http_reply_json(http_reply *reply, int code, json_t *value); /* owns value; NULL sends 500 */
 /* {"error": what, "remedy": remedy}; bytes that are not UTF-8 become '?'. */
 void http_reply_error(http_reply *reply, int code, const char *what, const char *remedy);

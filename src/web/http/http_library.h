@@ -12,7 +12,6 @@
     X(add_response_header)           \
     X(create_response_from_buffer)   \
     X(create_response_from_callback) \
-    X(create_response_from_fd)       \
     X(destroy_response)              \
     X(get_connection_info)           \
     X(get_connection_values)         \

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 #include <zlib.h>
 
 /* --- compression (RFC 9110, 8.4.1.3), for pages that reach the laboratory over a slow link, such as ssh --- */
@@ -115,14 +114,6 @@ void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, si
     struct MHD_Response *response = mhd.create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);
     if (!response)
         free(bytes);
-    http_reply_set(r, code, type, response);
-}
-
-void http_reply_file(http_reply *r, int code, const char *type, int file, size_t size)
-{
-    struct MHD_Response *response = mhd.create_response_from_fd(size, file);
-    if (!response)
-        close(file);
     http_reply_set(r, code, type, response);
 }
 

@@ -143,7 +143,7 @@ static void remove_abandoned(const char *place)
         closedir(entries);
 }
 
-/* Creates the temporary folder. If it cannot be created or locked, there is none, and figures and videos fail with an
+/* Creates the temporary folder. If it cannot be created or locked, there is none, and figures fail with an
  * error; a lack of memory or open files is an error at once. */
 static status add_temporary(lab *l, place_list *all, diagnostic *why)
 {
@@ -204,17 +204,4 @@ void lab_remove_temporary(lab *l)
 const char *lab_temporary_folder(const lab *l)
 {
     return l->temporary ? l->temporary : temporary_place();
-}
-
-FILE *lab_temporary_file(const lab *l)
-{
-    char *path = text_format("%s/cuvette-XXXXXX", lab_temporary_folder(l));
-    const int fd = path ? mkostemp(path, O_CLOEXEC) : -1;
-    FILE *file = fd >= 0 ? fdopen(fd, "w+") : NULL;
-    if (fd >= 0)
-        unlink(path);
-    if (fd >= 0 && !file)
-        close(fd);
-    free(path);
-    return file;
 }

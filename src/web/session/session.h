@@ -43,7 +43,6 @@ typedef struct lab_settings {
 } lab_settings;
 
 typedef struct studies studies; /* web/session/studies.h */
-typedef struct videos videos;   /* web/session/videos.h */
 
 struct lab {
     lab_settings settings;
@@ -52,7 +51,6 @@ struct lab {
     struct render_worker *render_worker;
     struct reference_image *reference_image;
     struct studies *studies;
-    struct videos *videos;
     struct sent_scenes *sent;      /* web/api/api.h */
     struct pixel_maps *pixel_maps; /* web/live/images.h */
     struct thumbnails *thumbnails; /* web/live/images.h */
@@ -79,9 +77,8 @@ struct lab {
 status lab_confine(lab *l, diagnostic *why);
 /* Removes the folder for temporary files, and the folder for unsaved scenes if it is empty. */
 void lab_remove_temporary(lab *l);
-/* The folder for temporary files, and a file in it without a name; NULL with errno. */
+/* The folder for temporary files. */
 const char *lab_temporary_folder(const lab *l);
-FILE *lab_temporary_file(const lab *l);
 
 /* Sends an event to all pages; owns value. Thread-safe. */
 void lab_publish(lab *l, const char *event, json_t *value);

@@ -1,4 +1,4 @@
-/* Work of the laboratory that takes long: the thread of a task, one at a time, such as a study or a video; and a
+/* Work of the laboratory that takes long: the thread of a task, one at a time, such as a study; and a
  * counting semaphore that limits work with much memory and time that cannot be interrupted: encoding or comparing
  * images, loading models. Ownership: task_thread_create prepares a value, task_thread_destroy releases it when no
  * thread runs; semaphore_create creates, semaphore_destroy releases when no thread holds a place or waits. The

@@ -13,7 +13,7 @@
  *   lab.newestPass                      the newest known pass, displayed or not
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, image (a pass is displayed), pass (a pass is available),
- *                                       slime, study, video, connection, restarted (a new server: all earlier data is
+ *                                       slime, study, connection, restarted (a new server: all earlier data is
  *                                       void), opened ({file, link, lesson, new}: another scene), view (the image's
  *                                       placement changed), tool, panel (one was selected)
  *   lab.emit(name, value)
@@ -42,7 +42,7 @@ const PULSE_MS = 10000;
 const SCENE_MS = 150; /* minimum time between two fetches of the scene */
 const DRAG_MS = 250; /* changes that follow each other within this time are a drag */
 const REST_MS = 150; /* a drag without a change for this time rests */
-const EVENTS = ['state', 'image', 'slime', 'study', 'video'];
+const EVENTS = ['state', 'image', 'slime', 'study'];
 
 function createEmitter() {
   const listeners = new Map();
