@@ -46,7 +46,6 @@ typedef struct animation_job {
     scene_motion *motion;
     job *frame_job;
     file_writer stream;
-    video video;
     animate_rows *rows; /* NULL: no table */
     int64_t frame, count;
     progress_line line;
@@ -127,7 +126,7 @@ static status write_image(animation_job *f, const char *path, const render_resul
     if (result == STATUS_OK)
         frame->tone = camera_tone(f->s);
     errno = 0;
-    THEN(result, video_frame(&f->video, frame, why));
+    THEN(result, y4m_frame(f->stream.stream, frame, why));
     image_destroy(frame);
     return result == STATUS_OK ? flush_stream(f, why) : result;
 }
@@ -188,10 +187,8 @@ static status open_stream(animation_job *f, diagnostic *why)
 {
     const animate_request *request = f->request;
     TRY(file_writer_open(&f->stream, request->output, why));
-    const video_format format = video_format_of(request->output);
-    return video_begin(&f->video, format == VIDEO_NONE ? VIDEO_Y4M : format, f->stream.stream,
-                       (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height, f->count,
-                       request->times.fps_num, request->times.fps_den, why);
+    return y4m_begin(f->stream.stream, (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height,
+                     request->times.fps_num, request->times.fps_den, why);
 }
 
 static status close_stream(animation_job *f, status ended, diagnostic *why)

@@ -16,7 +16,7 @@
 
 typedef struct animate_request {
     scene_input input;
-    const char *output;        /* a pattern of frame names, "-", or a name that ends in .y4m or .apng */
+    const char *output;        /* a pattern of frame names, "-", or a name that ends in .y4m */
     const char *script, *rows; /* NULL: not given */
     char *script_path;         /* script as an absolute path; owned */
     frame_times times;

@@ -71,7 +71,7 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     const char *name = file_name_of(pattern);
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
-        return refuse_name(pattern, "use " IMAGE_ENDINGS " for frames, .y4m or .apng for one video file",
+        return refuse_name(pattern, "use " IMAGE_ENDINGS " for frames, .y4m for one video file",
                            "unknown file name ending", why);
     if (memchr(pattern, '%', (size_t)(name - pattern)))
         return refuse_name(pattern, "number the files, not their folder", "the folder's name has a %", why);

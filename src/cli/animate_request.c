@@ -71,8 +71,8 @@ static status parse_rate(const command_option *o, void *context, const char *val
 
 static const command_option options[] = {
     {"output", 'o', "PATTERN",
-     "write frames, " IMAGE_ENDINGS ", numbered from 0 by one %d or %05d in the name; or one .y4m or .apng file "
-     "(-: .y4m to standard output)",
+     "write frames, " IMAGE_ENDINGS ", numbered from 0 by one %d or %05d in the name; or one .y4m video "
+     "(-: to standard output)",
      OPTION_FILLS(option_text, animate_request, output)},
     {"script", 0, "FILE", "read the hand script of all slimes from FILE",
      OPTION_FILLS(option_text, animate_request, script)},
@@ -95,7 +95,7 @@ static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output)
         return options_wrong("animate", NULL, why,
-                             "add -o frames/%05d.png for images, or -o NAME.y4m or NAME.apng for one video file",
+                             "add -o frames/%05d.png for images, or -o NAME.y4m for one video file",
                              "no output is given");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
@@ -172,7 +172,7 @@ void animate_request_release(animate_request *request)
 
 bool animate_is_stream(const animate_request *request)
 {
-    return strcmp(request->output, "-") == 0 || video_format_of(request->output) != VIDEO_NONE;
+    return strcmp(request->output, "-") == 0 || y4m_is_named(request->output);
 }
 
 status animate_check_length(const animate_request *request, diagnostic *why)
@@ -273,13 +273,10 @@ static double count_missing(const animate_names *names, int64_t count)
     return missing;
 }
 
-static void add_stream(const animate_request *request, double width, double height, double frames, disk_room *to)
+static void add_stream(double width, double height, double frames, disk_room *to)
 {
     const double chroma = ceil(width / 2) * ceil(height / 2), frame = width * height + 2 * chroma + 6; /* 4:2:0 */
-    if (video_format_of(request->output) == VIDEO_APNG)
-        image_room(IMAGE_PNG, width, height, frames, to);
-    else
-        disk_room_add(to, 1, frames * frame, frames * frame + 100);
+    disk_room_add(to, 1, frames * frame, frames * frame + 100);
 }
 
 static bool is_device(const char *path)
@@ -300,7 +297,7 @@ status animate_check_room(const animate_request *request, const animate_names *n
     if (names)
         image_room(image_format_of(request->output), width, height, count_missing(names, count), &needed);
     else
-        add_stream(request, width, height, (double)count, &needed);
+        add_stream(width, height, (double)count, &needed);
     if (request->rows)
         disk_room_add(&needed, 1, 0, ROW_MOST * (double)count);
     const char *place = names ? names->folder : request->output;

@@ -87,7 +87,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
             *) _cuvette_files 'study' ;;
             esac
             ;;
-        animate) _cuvette_files 'png|jpg|jpeg|pfm|exr|y4m|apng' ;;
+        animate) _cuvette_files 'png|jpg|jpeg|pfm|exr|y4m' ;;
         render) _cuvette_files 'png|jpg|jpeg|pfm|exr|html' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm|exr' ;;
         esac

@@ -319,9 +319,6 @@ check "the video has 6 frames of 6 + 64 * 48 * 3 / 2 bytes, nothing else" is "$(
 cp out stdout.y4m
 animate -o film.y4m --duration 0.2 --fps 30000/1001
 check "a video file has the same bytes" eval 'done_well && cmp film.y4m stdout.y4m'
-animate -o film.apng --duration 0.2 --fps 30000/1001
-check "an animated PNG has its frames" eval \
-    'done_well && [[ $(head -c 4 film.apng | tail -c 3) == PNG && $(grep -ao fcTL film.apng | wc -l) == 6 ]]'
 animate -o blown.y4m --set toy.stiffness=1e9 --duration 4
 check "a video file is written atomically" eval \
     '((code == 2)) && [[ ! -e blown.y4m && -z $(ls -A | grep part$ | grep cuvette) ]]'
