@@ -1,8 +1,9 @@
 /* The status line: properties and cost of the displayed image, the last message, and the live region for screen
  * readers; and the banner that reports a lost server, or an engine in the browser that stopped.
  * exports:
- *   createStatus(root, live, lab)       sets lab.say(words, remedy, {label, act} of a button), which returns a function
- *                                       that withdraws the message, and lab.fail(error)
+ *   createStatus(root, live, lab)       sets lab.say(words, remedy, {label, act} of a button, {brief, dismissed}), which
+ *                                       returns a function that withdraws the message, and lab.fail(error). brief: in
+ *                                       one line, also on a telephone; dismissed(): the user closed the message
  *   createBanner(banner, parts, lab)    the parts become inert while the engine is lost */
 
 import { say, translated } from './shared/language.js';
@@ -71,8 +72,12 @@ export function createStatus(root, live, lab) {
     message.replaceChildren();
   };
 
-  function showMessage(given, kind, givenRemedy, action) {
+  function showMessage(given, kind, givenRemedy, action, { brief = false, dismissed } = {}) {
     const [words, remedy] = [given, givenRemedy].map(translated);
+    const dismiss = () => {
+      clear();
+      dismissed?.();
+    };
     clearTimeout(timer);
     replace(
       message,
@@ -84,9 +89,9 @@ export function createStatus(root, live, lab) {
         remedy ? ` – ${remedy}` : null,
       ),
       action ? element('span', { class: 'status-action' }, button(action.label, action.act, { small: true })) : null,
-      button('Dismiss', clear, { icon: 'close', bare: true, kind: 'quiet', small: true }),
+      button('Dismiss', dismiss, { icon: 'close', bare: true, kind: 'quiet', small: true }),
     );
-    message.className = `status-message ${kind}`;
+    message.className = `status-message ${kind}${brief ? ' brief' : ''}`;
     message.hidden = false;
     live.textContent = '';
     requestAnimationFrame(() => {
@@ -96,7 +101,7 @@ export function createStatus(root, live, lab) {
     const mine = timer;
     return () => mine === timer && clear();
   }
-  lab.say = (words, remedy, action) => showMessage(words, 'info', remedy, action);
+  lab.say = (words, remedy, action, how) => showMessage(words, 'info', remedy, action, how);
   lab.fail = (error) => {
     if (error.status === 0 || error.status === 401) return;
     if (!error.status) console.error(error);

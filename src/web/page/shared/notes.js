@@ -1,12 +1,22 @@
 /* The linter's notes on the scene, fetched for each final image, and the notes on that image itself. A new note is
- * shown in the status line; the button there lists all. A remedy that sets parameters is a button that sets them.
+ * shown in the status line, once in a tab and never again after it was dismissed; the button there lists all. On a
+ * telephone the line has only their number. A remedy that sets parameters is a button that sets them.
  * exports:
  *   createNotes(lab) -> {count(), show()}               emits 'notes' on the lab when the list has changed
  *   depthNote(tree, lab) -> {text, label, values}       how much of a pixel's light the depth limit cuts off, as a note
  *                                                       and its remedy; null below 1 % */
 
+import { session } from './address.js';
 import { say, translated } from './language.js';
-import { button, dialog, digits, element } from './ui.js';
+import { button, dialog, digits, element, memory } from './ui.js';
+
+const SAID = 'notes.said'; /* of this tab */
+const DISMISSED = 'notes.dismissed'; /* of this browser */
+const REMEMBERED = 100;
+
+const narrow = matchMedia('(max-width: 900px) and (orientation: portrait), (max-width: 640px)');
+const framed = () => 'embed' in document.documentElement.dataset;
+const remember = (list, line) => [...list.filter((each) => each !== line), line].slice(-REMEMBERED);
 
 export function createNotes(lab) {
   let notes = [];
@@ -65,40 +75,57 @@ export function createNotes(lab) {
       checkedGeneration = 0; /* a study is measuring, or the scene cannot be rendered: both are reported elsewhere */
       return;
     }
-    const [first, ...more] = notes.filter((note) => !known.has(line(note)));
-    const remedy = translated(first?.remedy);
+    const fresh = notes.filter((note) => !known.has(line(note)) && !isOld(line(note)));
     if (said && !notes.some((note) => line(note) === said.line)) {
       said.withdraw();
       said = null;
     }
-    if (first && !openDialog)
-      said = {
-        line: line(first),
-        withdraw: lab.say(
-          first.place
-            ? say('Note: {place}: {text}', { place: first.place, text: translated(first.text) })
-            : say('Note: {text}', { text: translated(first.text) }),
-          more.length ? say('{remedy}; and {n} more', { remedy, n: more.length }) : remedy,
-          actionOf(first),
-        ),
-      };
+    if (fresh.length && !openDialog && !framed()) tell(fresh);
     if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
+  }
+
+  const isOld = (one) => [...(session.get(SAID) ?? []), ...memory.get(DISMISSED, [])].includes(one);
+
+  function tell([first, ...more]) {
+    const all = [first, ...more].map(line);
+    const remedy = translated(first.remedy);
+    const words = first.place
+      ? say('Note: {place}: {text}', { place: first.place, text: translated(first.text) })
+      : say('Note: {text}', { text: translated(first.text) });
+    const how = {
+      brief: narrow.matches,
+      dismissed: () => memory.set(DISMISSED, all.reduce(remember, memory.get(DISMISSED, []))),
+    };
+    const withdraw = narrow.matches
+      ? lab.say(
+          more.length ? say('{n} notes on the scene', { n: all.length }) : 'A note on the scene',
+          '',
+          { label: 'Show', act: show },
+          how,
+        )
+      : lab.say(
+          words,
+          more.length ? say('{remedy}; and {n} more', { remedy, n: more.length }) : remedy,
+          actionOf(first),
+          how,
+        );
+    session.set(SAID, all.reduce(remember, session.get(SAID) ?? []));
+    said = { line: line(first), withdraw };
+  }
+
+  function show() {
+    openDialog = dialog({ title: 'Notes on the scene', content: list() });
+    openDialog.closed.then(() => {
+      openDialog = null;
+    });
   }
 
   lab.on('image', ask);
   lab.on('restarted', () => {
     checkedGeneration = 0;
   });
-  return {
-    count: () => notes.length,
-    show() {
-      openDialog = dialog({ title: 'Notes on the scene', content: list() });
-      openDialog.closed.then(() => {
-        openDialog = null;
-      });
-    },
-  };
+  return { count: () => notes.length, show };
 }
 
 const CUT_LEAST = 0.01;
