@@ -1,8 +1,10 @@
-// Scenes shared by link, PNG image and HTML file: the film is the same.
+// Scenes shared by link, PNG image and HTML file: the film is the same. QR codes, frames and printed pages.
 import { execFileSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { QR_MOST, qrCode } from '../../src/web/page/shared/qr.js';
 
 // A link that holds the scene: copied from one page, opened by another, the film is the same; undo goes back.
 export const cases = {
@@ -90,6 +92,68 @@ export const cases = {
     } finally {
       rmSync(folder, { recursive: true });
     }
+  },
+
+  // The modules are those of node-qrcode 1.5.4 for the same mask, and jsQR 1.4.0 reads the texts from them.
+  'QR codes of versions 1, 7, 20 and 40': async (t) => {
+    const link = (length) => 'https://cuvette.example/#scene='.padEnd(length, 'eNqNUsFuwjAM-_').slice(0, length);
+    for (const [length, version, level, digest] of [
+      [14, 1, 'M', '140fe030207b8844'],
+      [150, 7, 'L', '386f46f4dae9ece8'],
+      [800, 20, 'L', '418c3b163ede8b4d'],
+      [2900, 40, 'L', 'a7771465d9cc012c'],
+    ]) {
+      const code = qrCode(link(length));
+      t.equal(`${code.version} ${code.level}`, `${version} ${level}`, `version and level of ${length} characters`);
+      const cells = Array.from({ length: code.size ** 2 }, (_, at) => at);
+      const bits = cells.map((at) => (code.dark(at % code.size, Math.floor(at / code.size)) ? 1 : 0)).join('');
+      t.equal(createHash('sha256').update(bits).digest('hex').slice(0, 16), digest, `modules of version ${version}`);
+    }
+    t.equal(qrCode(link(QR_MOST)).version, 40, 'the version of the longest text');
+    t.equal(qrCode(link(QR_MOST + 1)), null, 'the code of a longer text');
+  },
+
+  'a frame has the image and the lesson of its address; both pages of the lesson are printed': async (t) => {
+    const lab = await t.lab();
+    const screen = await t.open(lab);
+    const { page } = screen;
+    await page.goto('about:blank');
+    await page.goto(`${lab.home}?embed=1#lesson=critical-angle`);
+    await page.getByRole('heading', { name: 'When water becomes a mirror', level: 3 }).waitFor();
+    await screen.settled();
+    for (const [part, shown] of [
+      ['.head', false],
+      ['.tabs', false],
+      ['.status-facts', false],
+      ['.toolbar', true],
+      ['.embed-link', true],
+    ])
+      t.equal(await page.locator(part).first().isVisible(), shown, `${part} of a frame`);
+    await screen.until(() => document.querySelector('.embed-link').hash === '#lesson=critical-angle');
+    t.equal(new URL(await page.locator('.embed-link').evaluate((link) => link.href)).search, '', 'the link');
+    await t.axe(screen, 'a frame with a lesson');
+    await t.image(screen, 'embed');
+    await page.evaluate(() => {
+      window.print = () => {
+        window.printed = document.querySelector('.print-sheets');
+      };
+    });
+    const cells = async (label) => {
+      await screen.button(label).click();
+      const found = await screen.until(() => {
+        const all = [...(window.printed?.querySelectorAll('.sheet-table td') ?? [])];
+        window.printed = null;
+        return all.length && all.map((cell) => cell.textContent);
+      });
+      return found.jsonValue();
+    };
+    t.equal((await cells('Worksheet')).join(''), '', 'the blanks of the worksheet');
+    const solved = await cells("Teacher's page");
+    t.equal(solved.length, 10, 'numbers of five rows');
+    t.check(
+      solved.every((text, i) => text && (i % 2 || text === solved[i + 1])),
+      `measured and theory: ${solved}`,
+    );
   },
 
   'a scene that names files is saved without it, and the page says so': async (t) => {

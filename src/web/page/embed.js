@@ -3,7 +3,7 @@
  * exports: createEmbed(footer, lab)      call it when lab.panels exists */
 
 import { named } from './shared/address.js';
-import { element } from './shared/ui.js';
+import { element, write } from './shared/ui.js';
 
 const root = document.documentElement;
 const embedded = new URLSearchParams(location.search).get('embed') === '1';
@@ -22,6 +22,9 @@ export function createEmbed(footer, lab) {
   lab.on('panel', show);
   show(named().lesson ? 'lessons' : panels.chosen());
   footer.append(createLink(lab));
+  const title = element('h1', { class: 'visually-hidden', text: 'Cuvette' }); /* that of the head is hidden */
+  document.body.prepend(title);
+  lab.on('state', (state) => write(title, { textContent: state.title || 'Cuvette' }));
 }
 
 /* To the whole laboratory. The program has the scene; in a browser the link holds it, with its changes. */
