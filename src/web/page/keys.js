@@ -27,6 +27,7 @@ const list = [
     'with Grab, on the image: grab or release the slime; arrow keys pull, Page Up and ' +
       'Page Down pull along the view',
   ],
+  ['Escape', 'while dragging: take the drag back'],
   ['Shift drag', 'with Orbit: pan; with Light: nearer and farther; on a handle: snap'],
   ['Ctrl drag', 'with Orbit: turn in place'],
   [

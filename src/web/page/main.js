@@ -9,6 +9,7 @@ import { createBanner, createStatus } from './status.js';
 import { createNotes } from './shared/notes.js';
 import { createRescue } from './rescue.js';
 import { createEmbed } from './embed.js';
+import { createEscape } from './shared/escape.js';
 import { createPrint } from './shared/print.js';
 import { createDisplay } from './shared/display.js';
 import { createKeys } from './keys.js';
@@ -39,6 +40,7 @@ async function start() {
   const lab = createLab();
   window.lab = lab;
   createStatus(at('status'), at('live'), lab);
+  createEscape(lab);
   lab.notes = createNotes(lab);
   createBanner(at('banner'), [at('head'), at('rescue'), at('workspace')], lab);
   createRescue(at('rescue'), lab);

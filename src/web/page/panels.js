@@ -11,6 +11,7 @@
  *            begins each rule with .panel-ID; a site has all style sheets in its page, as #styles (src/web/site)
  * The panel's title is its h2: headings in it begin at h3. */
 
+import { dragging } from './shared/escape.js';
 import { say } from './shared/language.js';
 import { element, icon, memory, notice, replace } from './shared/ui.js';
 
@@ -215,10 +216,17 @@ function createSplitter(splitter, workspace) {
     memory.set(name, next);
     apply();
   };
+  let endDrag = null;
   splitter.addEventListener('pointerdown', (event) => {
+    const before = kept[about().name];
     splitter.setPointerCapture(event.pointerId);
+    endDrag = dragging(() => {
+      splitter.releasePointerCapture(event.pointerId);
+      set(before);
+    });
     event.preventDefault();
   });
+  splitter.addEventListener('lostpointercapture', () => endDrag());
   splitter.addEventListener('pointermove', (event) => {
     if (!splitter.hasPointerCapture(event.pointerId)) return;
     const box = workspace.getBoundingClientRect();

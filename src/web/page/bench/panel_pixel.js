@@ -37,6 +37,7 @@ function mark(ray) {
 }
 
 function start(lab) {
+  let before = null; /* the pixel before a drag */
   question = createQuestion(lab);
   overlay = createRayOverlay(lab);
   marking.add(overlay.mark);
@@ -55,9 +56,11 @@ function start(lab) {
     hint: 'See where the light of a pixel comes from: click it (arrow keys: the next pixel)',
     chosen: () => lab.panels?.select('pixel'),
     down: (point) => {
+      before = question.pixel;
       if (point.inside) question.ask(point.x, point.y);
       return point.inside;
     },
+    cancel: () => (before ? question.ask(before.x, before.y) : question.clear()),
     move: (point) => question.ask(point.x, point.y),
     hover: (point) => mark(overlay.nearest(point)),
     leave: () => mark(null),

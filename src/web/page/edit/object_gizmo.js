@@ -3,6 +3,7 @@
  * keys change the object. Shift while dragging, or the switch Snap, rounds to the steps of the panel Objects.
  * exports: createGizmo(lab, choice, mark, movable(object)) -> {show(), hide(), key(event), snaps, inSteps(vector)} */
 
+import { dragging, takeBack } from '../shared/escape.js';
 import { say } from '../shared/language.js';
 import { checkbox, choice as choiceOf, element, gesture, gestures, memory, svg } from '../shared/ui.js';
 import { add, dot, minus, times, unit } from '../shared/vectors.js';
@@ -164,6 +165,7 @@ export function createGizmo(lab, choice, mark, movable) {
       gesture: gesture('gizmo'),
       sent: mode === 'scale' ? 1 : 0,
       last: 0,
+      end: dragging(cancel),
     };
     drag.from = measure(event);
     event.preventDefault();
@@ -217,7 +219,14 @@ export function createGizmo(lab, choice, mark, movable) {
   }
 
   function finish() {
+    drag?.end();
     drag = null;
+  }
+
+  function cancel() {
+    takeBack(drag.gesture);
+    drag = null;
+    draw();
   }
 
   function press(name, event) {

@@ -6,6 +6,7 @@
  *   createMark(lab, choice) -> {at() -> [x,y,z] or null}     the mark of the selected object over the image, while its
  *                                                            tool or panel is active */
 
+import { takeBack } from '../shared/escape.js';
 import { gesture, gestures, svg } from '../shared/ui.js';
 import { add, dot, minus, spreadAt, times } from '../shared/vectors.js';
 import { createWheelZoom } from '../view/camera_moves.js';
@@ -41,6 +42,7 @@ export function objectTool(lab, choice, mark) {
     down,
     move,
     up,
+    cancel,
     key,
   });
 
@@ -75,7 +77,15 @@ export function objectTool(lab, choice, mark) {
 
   function down(point, event) {
     if (!lab.state?.camera || (!point.inside && !choice.name)) return false;
-    const now = (drag = { gesture: gesture('object'), from: point, last: point, depth: 0, hit: null, far: false });
+    const now = (drag = {
+      gesture: gesture('object'),
+      chosen: choice.name,
+      from: point,
+      last: point,
+      depth: 0,
+      hit: null,
+      far: false,
+    });
     if (event.shiftKey || !point.inside) {
       aimAtChosen(now);
       return true;
@@ -86,6 +96,7 @@ export function objectTool(lab, choice, mark) {
 
   /* Meanwhile the pointer may have moved or been released. */
   async function aim(now, hit) {
+    if (now.cancelled) return;
     now.hit = hit;
     const object = hit && lab.object(hit.solid);
     if (moves(object)) {
@@ -103,7 +114,7 @@ export function objectTool(lab, choice, mark) {
 
   /* With snapping, the object moves in steps along each axis, counted from its position before the drag. */
   function dragTo(now, point) {
-    if (!(now.depth > 0) || !choice.name) return;
+    if (!(now.depth > 0) || !choice.name || now.cancelled) return;
     const all = offset(point.x - now.from.x, point.y - now.from.y, now.depth);
     const to = gizmo.snaps ? gizmo.inSteps(all) : all;
     const by = minus(to, now.sent || [0, 0, 0]);
@@ -124,6 +135,13 @@ export function objectTool(lab, choice, mark) {
     if (!now) return;
     now.ended = true;
     if (!now.far && now.known && !moves(lab.object(now.hit?.solid))) choice.choose(now.hit ? now.hit.solid : '');
+  }
+
+  function cancel() {
+    drag.cancelled = true;
+    takeBack(drag.gesture);
+    choice.choose(drag.chosen);
+    drag = null;
   }
 
   function key(event) {

@@ -8,7 +8,8 @@
 
 import { numberInput, numberOf, restoreField, scale } from '../shared/controls.js';
 import { local, say, translated } from '../shared/language.js';
-import { element, gesture, gestures, toByte, toLinear, unique } from '../shared/ui.js';
+import { sliderDrag } from '../shared/slider_drag.js';
+import { element, gesture, toByte, toLinear, unique } from '../shared/ui.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
@@ -40,8 +41,6 @@ function numberBox(context, label, onvalue) {
 
 function slider(row, context, label, send) {
   let ruler = null;
-  const presses = gestures('slider');
-  let dragged = false;
   const range = element('input', { type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label) });
   const box = numberBox(context, say('{label}, number', { label: label || context.name }), (value) => {
     show(value);
@@ -59,22 +58,19 @@ function slider(row, context, label, send) {
     range.setAttribute('aria-valuetext', `${local(written(value))}${row.unit ? ` ${translated(row.unit)}` : ''}`);
     range.style.setProperty('--filled', `${(100 * range.value) / ruler.steps}%`);
   };
-  range.addEventListener('pointerdown', presses.end);
-  range.addEventListener('input', (event) => {
-    const mine = presses.at(event.timeStamp, '', dragged);
-    dragged = true;
-    const value = ruler.value(Number(range.value));
-    show(value);
-    box.set(value);
-    send(value, mine);
-  });
-  range.addEventListener('change', () => {
-    dragged = false;
+  const drag = sliderDrag(range, {
+    value: () => ruler.value(Number(range.value)),
+    before: () => numberOf(box.input),
+    show(value) {
+      show(value);
+      box.set(value);
+    },
+    send,
   });
   return {
     nodes: [range, box.input],
     inputs: [range, box.input],
-    busy: () => dragged,
+    busy: drag.busy,
     set(value, rescale) {
       if (rescale) fit(); /* not the range of the rejected value */
       show(value);

@@ -1,6 +1,7 @@
 /* The tool Grab: drags the slime in the image with any number of pointers, or with the keyboard.
  * exports: createGrab(lab) */
 
+import { dragging } from '../shared/escape.js';
 import { svg } from '../shared/ui.js';
 
 const KEYS = 'keys';
@@ -176,6 +177,7 @@ function createHands(lab, changed) {
           .catch(() => undefined);
       }
     };
+    if (key !== KEYS) hand.end = dragging(() => drop(key)); /* the slime then returns by itself */
     hands.set(key, hand);
     changed();
     hold(key, hand, x, y, grabbed);
@@ -221,6 +223,7 @@ function createHands(lab, changed) {
 
   function forget(key, hand) {
     hand.held = false;
+    hand.end?.();
     if (hands.get(key) === hand) hands.delete(key);
     changed();
   }

@@ -7,9 +7,10 @@
  *   restoreField(input, text)                                marks a wrong entry, with its reason; restores the text
  *   scale({min, max, step, logFrom})                         the positions of a slider */
 
-import { element, gesture, gestures, unique } from './elements.js';
+import { element, gesture, unique } from './elements.js';
 import { local, say, translated } from './language.js';
 import { digits } from './numbers.js';
+import { sliderDrag } from './slider_drag.js';
 
 /* --- the input of a number field ---
  * It accepts a decimal comma as well as a point, in every language of the browser: an input of type number drops one of
@@ -217,26 +218,20 @@ export function slider({ label, min, max, step = (max - min) / 200, value, logFr
     id: unique('range'),
   });
   const box = numberInput({ value: shown(value), 'aria-label': say('{label}, number', { label: translated(label) }) });
-  let mine = null;
-  const presses = gestures('slider');
-  let dragged = false;
   const show = (next) => {
     input.value = ruler.position(next);
     input.setAttribute('aria-valuetext', `${digits(next)}${unit ? ` ${unit}` : ''}`);
     input.style.setProperty('--filled', `${(100 * input.value) / ruler.steps}%`);
   };
-  input.addEventListener('pointerdown', presses.end);
-  input.addEventListener('input', (event) => {
-    mine = presses.at(event.timeStamp, '', dragged);
-    dragged = true;
-    const next = ruler.value(Number(input.value));
-    box.value = shown(next);
-    show(next);
-    oninput?.(next, mine);
-  });
-  input.addEventListener('change', () => {
-    onchange?.(ruler.value(Number(input.value)), mine ?? presses.at(performance.now()));
-    dragged = false;
+  const drag = sliderDrag(input, {
+    value: () => ruler.value(Number(input.value)),
+    before: () => numberOf(box),
+    show(next) {
+      box.value = shown(next);
+      show(next);
+    },
+    send: (next, name) => oninput?.(next, name),
+    rest: (next, name) => onchange?.(next, name),
   });
   box.addEventListener('change', () => {
     if (box.value === '') return;
@@ -268,7 +263,7 @@ export function slider({ label, min, max, step = (max - min) / 200, value, logFr
     input,
     box,
     set(next) {
-      if (dragged) return;
+      if (drag.busy()) return;
       show(next);
       if (document.activeElement !== box) box.value = shown(next);
     },

@@ -27,6 +27,7 @@
  *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set;
  *                                       merge(waiting, body) -> body merges two of one gesture and path (default: the
  *                                       newer replaces the older)
+ *   lab.change.takeBack(gesture)        see change_queue.js
  *   lab.refresh()                       fetches state and scene again
  *   lab.start()                         opens the event stream
  *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
@@ -118,7 +119,7 @@ export function createLab() {
       );
     return reply;
   };
-  lab.change.idle = change.idle;
+  Object.assign(lab.change, { idle: change.idle, takeBack: change.takeBack });
   lab.set = (values, gesture) =>
     lab
       .change(

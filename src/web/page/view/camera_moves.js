@@ -9,6 +9,7 @@
  *   orbitTool(lab)                      the tool Orbit: dragging orbits about the pivot, with Shift pans, with Ctrl
  *                                       turns in place; the wheel scales the distance from the pivot, which stays */
 
+import { takeBack } from '../shared/escape.js';
 import { gesture, gestures } from '../shared/ui.js';
 import { spreadAt } from '../shared/vectors.js';
 
@@ -53,6 +54,10 @@ const DEGREES = 0.35; /* per CSS pixel of dragging */
 
 export function orbitTool(lab) {
   let drag = null;
+  const up = () => {
+    drag = null;
+    lab.view.stage.style.cursor = 'grab';
+  };
 
   lab.view.tool('orbit', {
     label: 'Orbit',
@@ -74,9 +79,10 @@ export function orbitTool(lab) {
       if (drag.what === 'pan') panCamera(lab, ...by, drag.gesture);
       else moveCamera(lab, drag.what === 'turn' ? { turn: [-right, down] } : { orbit: [right, down] }, drag.gesture);
     },
-    up() {
-      drag = null;
-      lab.view.stage.style.cursor = 'grab';
+    up,
+    cancel() {
+      takeBack(drag.gesture);
+      up();
     },
     wheel: createWheelZoom(lab),
   });

@@ -7,6 +7,7 @@
  *   pixel       [x, y], a pixel to frame, or null
  * The handle is dragged with the pointer or moved with the arrow keys. */
 
+import { dragging } from '../shared/escape.js';
 import { showImage } from '../shared/images.js';
 import { element, svg, unique } from '../shared/ui.js';
 
@@ -29,7 +30,15 @@ export function createCompareView(lab, onsplit) {
     'aria-valuemax': 100,
     'aria-orientation': 'horizontal',
     hidden: true,
-    onpointerdown: (event) => handle.setPointerCapture(event.pointerId),
+    onpointerdown(event) {
+      const { fraction } = now;
+      handle.setPointerCapture(event.pointerId);
+      endDrag = dragging(() => {
+        handle.releasePointerCapture(event.pointerId);
+        onsplit(fraction);
+      });
+    },
+    onlostpointercapture: () => endDrag(),
     onpointermove: (event) => {
       if (handle.hasPointerCapture(event.pointerId))
         onsplit(Math.min(1, Math.max(0, view.fromEvent(event).x / view.width)));
@@ -57,6 +66,7 @@ export function createCompareView(lab, onsplit) {
   const layer = view.layer('compare');
   let now = { a: null, map: null, mode: 'b', fraction: 0.5, strength: 1, pixel: null };
   let flipped = false;
+  let endDrag = null;
 
   layer.append(svg('clipPath', { id: clip }, part), a, map, edge, frame);
   layer.parentNode.prepend(layer);

@@ -5,6 +5,7 @@
  *     list() -> [{path, name}]: the parameters to move and their names; symbol: an icon; what: for screen readers
  *   lightTool(lab)     the tool Light: one handle per light */
 
+import { dragging, takeBack } from '../shared/escape.js';
 import { say, translated } from '../shared/language.js';
 import { element, gesture, gestures, icon, vector } from '../shared/ui.js';
 import { spreadAt } from '../shared/vectors.js';
@@ -164,6 +165,7 @@ export function createPointHandles(lab, { list, symbol, what }) {
         at: position(handle),
         seen: !where(position(handle)).outside,
         gesture: gesture('point'),
+        end: dragging(cancel),
       };
       event.preventDefault();
       event.stopPropagation();
@@ -177,7 +179,13 @@ export function createPointHandles(lab, { list, symbol, what }) {
       Object.assign(handle.drag, { x: event.clientX, y: event.clientY, at: next });
       move(handle, next, handle.drag.gesture);
     });
+    const cancel = () => {
+      takeBack(handle.drag.gesture);
+      Object.assign(handle, { drag: null, moved: null });
+      show(handle);
+    };
     const end = () => {
+      handle.drag?.end();
       handle.drag = null;
     };
     handle.node.addEventListener('pointerup', end);

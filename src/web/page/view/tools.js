@@ -2,6 +2,7 @@
  * image, panning the camera, pinching, and the pixel readout, which all tools share.
  * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
 
+import { dragging, takeBack } from '../shared/escape.js';
 import { button, element, gesture, icon, unique, write } from '../shared/ui.js';
 import { moveCamera, panCamera, unitsPerPixel } from './camera_moves.js';
 
@@ -123,18 +124,35 @@ export function createToolbar(view, lab, readout) {
     });
   }
 
+  /* Each has back(), for Escape. */
   function panTheCamera(name) {
-    return (dx, dy) => panCamera(lab, dx, dy, name);
+    return Object.assign((dx, dy) => panCamera(lab, dx, dy, name), { back: () => takeBack(name) });
+  }
+
+  function panTheImage() {
+    const { left, top, fitted } = view.place;
+    const back = () => {
+      Object.assign(view.place, { left, top, fitted });
+      view.redraw();
+    };
+    return Object.assign((dx, dy) => view.pan(dx, dy), { back });
+  }
+
+  function cancel() {
+    const { pans } = drag;
+    drag = null;
+    if (pans) pans.back();
+    else tools.get(chosen)?.cancel?.();
   }
 
   function down(event) {
     if (event.target.closest('button, input, select, a') || drag) return;
     view.stage.focus({ preventScroll: true });
     const point = view.fromEvent(event);
-    const pans = event.button === 1 ? panTheCamera(gesture('pan')) : event.button === 0 && space ? view.pan : null;
+    const pans = event.button === 1 ? panTheCamera(gesture('pan')) : event.button === 0 && space ? panTheImage() : null;
     if (!pans && event.button !== 0) return;
     if (!pans && tools.get(chosen)?.down?.(point, event) === false) return;
-    drag = { id: event.pointerId, start: point, pans, x: event.clientX, y: event.clientY };
+    drag = { id: event.pointerId, start: point, pans, x: event.clientX, y: event.clientY, end: dragging(cancel) };
     view.stage.setPointerCapture(event.pointerId);
     event.preventDefault();
   }
@@ -160,8 +178,9 @@ export function createToolbar(view, lab, readout) {
 
   function letGo(event) {
     if (!drag) return;
-    const { pans } = drag;
+    const { pans, end } = drag;
     drag = null;
+    end();
     if (!pans) tools.get(chosen)?.up?.(view.fromEvent(event), event);
   }
 
@@ -252,7 +271,12 @@ function createPinch(stage, lab, letGo) {
   function begin() {
     const first = span();
     const sent = { spread: first.spread, right: 0, up: 0 };
-    pinch = { ...first, distance: lab.state?.view?.distance, sent, gesture: gesture('pinch') };
+    const name = gesture('pinch');
+    const end = dragging(() => {
+      pinch = null;
+      takeBack(name);
+    });
+    pinch = { ...first, distance: lab.state?.view?.distance, sent, gesture: name, end };
   }
 
   function span() {
@@ -285,7 +309,10 @@ function createPinch(stage, lab, letGo) {
   function lift(event) {
     const mine = Boolean(pinch);
     touches.delete(event.pointerId);
-    if (touches.size === 0) pinch = null;
+    if (touches.size === 0) {
+      pinch?.end();
+      pinch = null;
+    }
     return mine;
   }
 }
