@@ -62,7 +62,7 @@ export const cases = {
     t.equal(await width(), wide, 'the width of the panels');
   },
 
-  'a note is told once, in one line on a telephone': async (t) => {
+  'a note is shown once, in one line on a telephone': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 390, height: 844, touch: true });
     const { page } = screen;
