@@ -1,10 +1,11 @@
-/* The language of the page. The English text is the key; the catalogue of the chosen language (languages/CODE.json) has
+/* The language of the page. The English text is the key; the catalogue of the chosen language, languages/CODE.json, has
  * its translation, a text or one for each plural form. A text without a translation stays English.
  * The language is that of the address (?lang=de), else the one chosen in the page's head, else the browser's.
  * exports:
  *   say(text, values)      the translation with {name} replaced by values.name; a number gets the decimal mark; the
- *                          number {n} chooses the plural form. The text is a literal (tests/source/texts.py reads it)
- *   translated(text)       the translation of a constant, or the text itself; elements.js calls it for all that it shows
+ *                          number {n} or {count} chooses the plural form. The text is a literal, for
+ *                          tests/source/texts.py
+ *   translated(text)       the translation of a constant, or the text itself; elements.js calls it for what it shows
  *   local(text)            the decimal point of a number as text is replaced by the language's mark
  *   language               the code in use, such as 'de'
  *   languages              {code: the language's name in itself}
@@ -81,7 +82,10 @@ function template(text, n) {
   return n === 1 && Object.hasOwn(SINGULARS, text) ? SINGULARS[text] : text;
 }
 
+/* The number of a plural form; NaN, so the form for others, if the text is not a plain number. */
+const countOf = ({ n, count = n }) => (typeof count === 'string' ? Number(count.replace(/\s/g, '')) : count);
+
 const shown = (value) => (typeof value === 'number' ? local(String(value)) : value);
 
 export const say = (text, values = {}) =>
-  template(text, Number(values.n)).replace(/\{(\w+)\}/g, (whole, name) => shown(values[name]) ?? whole);
+  template(text, countOf(values)).replace(/\{(\w+)\}/g, (whole, name) => shown(values[name]) ?? whole);

@@ -3,4 +3,10 @@
 
 export const SINGULARS = {
   '{n} notes': '{n} note',
+  '{n} cells': '{n} cell',
+  '{n} values': '{n} value',
+  '{n} rays': '{n} ray',
+  '{n} cells have different films: the rendered images differ.':
+    '{n} cell has different films: the rendered images differ.',
+  'and {n} more media': 'and {n} more medium',
 };

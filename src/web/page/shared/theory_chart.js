@@ -14,7 +14,7 @@ let unfolded = false; /* a new measurement leaves the table open */
 
 /* Replaces a unit in ASCII, as on the command line, by the page's spelling. */
 export function pretty(text) {
-  const [, name, unit] = /^(.*?)(?:, (deg|px|m|scene units))?$/.exec(text);
+  const [, name, unit] = /^(.*?)(?:, (deg|px|nm|m|s|scene units))?$/.exec(text);
   if (!unit) return translated(name);
   return `${translated(name)} (${unit === 'deg' ? '°' : translated(unit)})`;
 }
