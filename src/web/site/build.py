@@ -39,6 +39,8 @@ def write_folder(parts, wasm, folder):
     write(folder / 'lab.js', parts['lab'])
     for path in bundle.lesson_images():
         write(folder / 'lessons' / path.name, path.read_bytes())
+    for name, catalogue in parts['languages'].items():
+        write(folder / f'languages/{name}.json', catalogue)
     engine = {'files.json': parts['files'].encode()}
     engine |= {f'{set_name}/{name}': engine_part(wasm, set_name, name) for set_name in SETS for name in ENGINE}
     for name, content in engine.items():
@@ -49,7 +51,8 @@ def write_folder(parts, wasm, folder):
 def one_file(parts, wasm):
     """laboratory.html, with the engine for vectors: every browser that can unpack it has them."""
     content = {'worker': engine_part(wasm, SETS[0], ENGINE[0]), 'module': engine_part(wasm, SETS[0], ENGINE[1]),
-               'files': parts['files'].encode()}
+               'files': parts['files'].encode(),
+               **{f'language-{name}': catalogue.encode() for name, catalogue in parts['languages'].items()}}
     end = ''.join(bundle.part_element(name, part) for name, part in content.items()) + bundle.image_element()
     end += bundle.script(parts['lab'], ' type="module"') + bundle.script(parts['boot'])
     return bundle.document('', end)
@@ -86,6 +89,7 @@ def main():
         'boot': bundle.classic(Path(__file__).parent / 'boot.js'),
         'lab': bundle.module(bundle.PAGE / 'main.js'),
         'files': bundle.files(),
+        'languages': bundle.languages(),
     }
     write_folder(parts, wasm, folder / 'laboratory')
     write(folder / 'laboratory.html', one_file(parts, wasm))

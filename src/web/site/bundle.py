@@ -75,6 +75,12 @@ def files():
     return json.dumps(packed, ensure_ascii=False, separators=(',', ':'))
 
 
+def languages():
+    """The catalogues: {CODE: JSON}."""
+    catalogues = {path.stem: json.loads(path.read_text(encoding='utf-8')) for path in PAGE.glob('languages/*.json')}
+    return {code: json.dumps(texts, ensure_ascii=False, separators=(',', ':')) for code, texts in catalogues.items()}
+
+
 def replaced(text, pattern, new):
     """The text with `new` instead of the first match, and without the other matches."""
     found = list(re.finditer(pattern, text))

@@ -4,7 +4,7 @@
 export const SINGULARS = {
   '{n} notes': '{n} note',
   '{n} cells': '{n} cell',
-  '{n} values': '{n} value',
+  '{axis}: {n} values': '{axis}: {n} value',
   '{n} rays': '{n} ray',
   '{n} cells have different films: the rendered images differ.':
     '{n} cell has different films: the rendered images differ.',
