@@ -202,10 +202,11 @@ CUVETTE_API cuvette_status cuvette_scene_each_parameter(const cuvette_scene *sce
 
 /* --- objects ---
  *
- * Lights, materials, solids, meshes, textures and data have names: at most 63 letters, digits, _ and -, of which the
- * first is a letter or _; names are unique within a scene. A scene holds at most 1024 lights, 256 materials, 64 meshes,
- * 64 textures, 64 planes and solids of meshes together, and 2 million other solids. Where solids overlap, the medium is
- * that of the solid with the highest `priority`, or of the one added first if priorities are equal. */
+ * Lights, materials, solids, meshes, textures and data have names: letters of any script, digits, _ and -, at most
+ * 63 bytes of UTF-8, the first a letter or _; names are unique within a scene. A scene holds at most 1024 lights, 256
+ * materials, 64 meshes, 64 textures, 64 planes and solids of meshes together, and 2 million other solids. Where solids
+ * overlap, the medium is that of the solid with the highest `priority`, or of the one added first if priorities are
+ * equal. */
 
 typedef enum cuvette_object {
     CUVETTE_LIGHT,

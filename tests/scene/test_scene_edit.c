@@ -95,6 +95,7 @@ static void invalid_names_are_refused(void **state)
     assert_refused(s, scene_add_solid(s, "camera", SHAPE_BOX, NULL, &why),
                    "the name 'camera' is a reserved word of scene files");
     assert_refused(s, scene_add_solid(s, "two words", SHAPE_BOX, NULL, &why), "'two words' is not a valid name");
+    assert_refused(s, scene_rename(s, "a", "a→b", &why), "'a→b' is not a valid name");
     assert_refused(s, scene_remove(s, "lump", &why), "the scene has no object 'lump'");
     assert_refused(s, scene_rename(s, "lamp", "other", &why), "the name 'other' is already in use");
     assert_refused(s, scene_rename(s, "camera", "eye", &why), "the camera has no name");
@@ -104,6 +105,17 @@ static void invalid_names_are_refused(void **state)
     assert_refused(s, scene_move(s, "glass", vec3_make(1, 0, 0), &why), "glass is a material, which has no place");
     assert_refused(s, scene_turn(s, "lamp", vec3_make(1, 0, 0), &why), "lamp is a light, which has no direction");
     assert_refused(s, scene_move(s, "render", vec3_make(1, 0, 0), &why), "render is the render, which has no place");
+    scene_destroy(s);
+}
+
+static void names_have_letters_of_any_script(void **state)
+{
+    (void)state;
+    scene *s = scene_from(small_scene);
+    static const char *const names[] = {"Линза_1", "größe", "透鏡", "a"};
+    const char *old = "a";
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; old = names[i++])
+        assert_int_equal(scene_rename(s, old, names[i], NULL), STATUS_OK);
     scene_destroy(s);
 }
 
@@ -474,6 +486,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(added_objects_have_the_defaults_of_a_file),
         cmocka_unit_test(invalid_names_are_refused),
+        cmocka_unit_test(names_have_letters_of_any_script),
         cmocka_unit_test(a_material_in_use_is_not_removed),
         cmocka_unit_test(a_mesh_or_texture_in_use_is_not_removed),
         cmocka_unit_test(removing_a_fixed_group_restores_its_defaults),

@@ -24,19 +24,32 @@ static bool is_reserved(const char *name)
     return false;
 }
 
-static bool is_letter(char c)
+/* Letters of any script, not by a table of Unicode: above ASCII all but controls, punctuation, symbols, arrows, private
+ * and invisible characters, by their blocks. */
+static bool is_letter(uint32_t c)
 {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    static const uint32_t others[][2] = {{0, 0xbf},        {0xd7, 0xd7},     {0xf7, 0xf7},       {0x2000, 0x2bff},
+                                         {0x3000, 0x3004}, {0x3008, 0x3020}, {0xd800, 0xf8ff},   {0xfe00, 0xfe6f},
+                                         {0xfeff, 0xff20}, {0xfff0, 0xffff}, {0x1f000, 0x1faff}, {0xe0000, UINT32_MAX}};
+    if (c < 0x80)
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (c >= others[i][0] && c <= others[i][1])
+            return false;
+    return true;
 }
 
 status check_name(const char *name, diagnostic *why)
 {
-    size_t length = strlen(name);
-    bool valid = is_letter(name[0]) && length <= SCENE_NAME_MAX;
-    for (const char *c = name; valid && *c; c++)
-        valid = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
+    uint32_t c = 0;
+    bool valid = name[0] && strlen(name) <= SCENE_NAME_MAX;
+    for (size_t at = 0, size; valid && name[at]; at += size) {
+        size = text_utf8(name + at, &c);
+        valid = size && (is_letter(c) || (at > 0 && ((c >= '0' && c <= '9') || c == '-')));
+    }
     if (!valid)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 63 letters, digits, _ and -, beginning with a letter or _",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "use letters of any script, digits, _ and -, at most 63 bytes, beginning with a letter or _",
                         "'%.80s' is not a valid name", name);
     if (is_reserved(name))
         return diagnose(why, STATUS_BAD_INPUT, "choose another name", "the name '%s' is a reserved word of scene files",
