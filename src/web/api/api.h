@@ -29,8 +29,8 @@ api_handler api_state, api_scene, api_find, api_set, api_reset, api_undo, api_re
     api_study_rows_csv, api_study_summary_tsv, api_study_compare, api_study_draw, api_study_figure, api_figure,
     api_machine, api_notes, api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open,
     api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new, api_fan, api_fan_csv, api_fan_drawing,
-    api_realism, api_realism_csv, api_realism_curve, api_realism_curve_csv,
-    api_motion, api_motion_stop, api_rescue, api_lens, api_lens_csv, api_section, api_section_drawing;
+    api_realism, api_realism_csv, api_realism_curve, api_realism_curve_csv, api_motion, api_motion_stop, api_rescue,
+    api_lens, api_lens_csv, api_section, api_section_drawing;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
