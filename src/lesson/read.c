@@ -242,8 +242,10 @@ static status add_object(const lesson_reader *r, const node *name, const node *m
     if (map->kind != NODE_MAP)
         return node_error(r->file, map, r->why, "write keys and values, as in a scene file", "'%.64s' has no keys",
                           name->text);
-    shape_kind kind = SHAPE_BOX;
-    if (is_solid && shape && shape->kind == NODE_SCALAR)
+    if (is_solid && (!shape || shape->kind != NODE_SCALAR))
+        return node_error(r->file, map, r->why, "add the key shape", "the solid '%.64s' has no shape", name->text);
+    shape_kind kind = (shape_kind)0;
+    if (is_solid)
         TRY(lesson_relay(r, shape, scene_shape_named(shape->text, &kind, &refused), refused.remedy, &refused));
     const status code = is_solid ? scene_add_solid(l->start, name->text, kind, NULL, &refused)
                                  : scene_add(l->start, PARAM_BEAM, name->text, NULL, &refused);

@@ -1,4 +1,4 @@
-// A scene of 10 000 solids: the page builds what is seen, asks for the parameters that it shows, and takes only what
+// A scene of 10 000 solids: the page builds what is seen, requests the parameters that it shows, and takes only what
 // differs. Counts are checked; times are reported, because they depend on the machine.
 import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';

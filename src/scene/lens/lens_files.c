@@ -6,8 +6,8 @@
  * coating, of all faces of glass in air; vdx, vdy, vcx and vcy, vignetting factors with a number for each field.
  * Columns: radius (0, empty or inf: flat), thickness, medium (lens_medium_parse, or mirror), diameter, conic, a4
  * ... a20, a1, a2, a3, a5 ... a15, form (round, biconic or toric) with radius_x and conic_x, stop (any text but
- * 0), hole, chamfer, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and thickness
- * may be missing. */
+ * 0), hole, chamfer, name, tilt_x and tilt_y (degrees, of a flat mirror that folds the axis); all but radius and
+ * thickness may be missing. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/text.h"

@@ -1,6 +1,6 @@
-/* The panels next to the image, in groups by what a person does, and the splitter between them. The first row of tabs has
- * the groups, and the panels that stand alone; the second row has the panels of the chosen group. A panel is created
- * when it is first shown.
+/* The panels next to the image, in groups by what a person does, and the splitter between them. The first row of tabs
+ * has the groups, and the panels that stand alone; the second row has the panels of the chosen group. A panel is
+ * created when it is first shown.
  * exports: createPanels(side, splitter, workspace, panels, lab) -> {select(id), chosen(), reveal()}
  *   reveal(): shows the image if a wide panel covers it
  *

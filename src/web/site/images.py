@@ -1,4 +1,4 @@
-"""The images that are shown before an engine has rendered: python3 -B src/web/site/images.py CUVETTE (make page-images).
+"""The images that are shown before an engine has rendered (make page-images).
 
 Writes src/web/page/lessons/NAME.jpg for each lesson, with the rays of its beams, and first.jpg here, the scene with
 which the site opens; removes images of lessons that do not exist any more. Prints their sizes, and fails if they are
@@ -31,7 +31,8 @@ def small_jpeg(path):
 
 
 def render(cuvette, scene, size, output):
-    values = json.loads(subprocess.run([cuvette, 'params', scene, '--json'], check=True, capture_output=True).stdout)['params']
+    listed = subprocess.run([cuvette, 'params', scene, '--json'], check=True, capture_output=True).stdout
+    values = json.loads(listed)['params']
     value = {row['path']: row['value'] for row in values if row['path'].startswith('render.')}
     width, height = value['render.width'], value['render.height']
     shrink = min(max(size[0] / width, size[1] / height), 1)

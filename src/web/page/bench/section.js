@@ -12,6 +12,7 @@
  *   place(), size()                      where a new thing goes, and its size: section_place.js
  *   set(name, on)                        the switches 'angles', 'images', 'grid', 'snap'
  *   fit()                                shows all
+ *   copy()                               the drawing as an SVG element with all its style
  *   node                                 the drawing, an SVG element
  *   plane, port, areas, segments, hits   what is drawn, as in section_plane.js and section_rays.js; null before the
  *                                        first reply
@@ -489,7 +490,8 @@ function createBar(lab, section, { look, moveTo }) {
     section.ask();
     section.draw();
   };
-  const { saveSvg, print } = sectionExports(lab, section);
+  const { saveSvg, print, copy } = sectionExports(lab, section);
+  section.copy = copy;
   const small = { bare: true, kind: 'quiet', small: true };
   const node = element(
     'div',

@@ -1,5 +1,5 @@
-/* The panel Objects: scene files, the palette of the bench, other objects to add, the list of all objects, and the selected one. exports: panel. The
- * tool Object selects and moves objects in the image. */
+/* The panel Objects: scene files, the palette of the bench, other objects to add, the list of all objects, and the
+ * selected one. exports: panel. The tool Object selects and moves objects in the image. */
 
 import { share } from '../shared/share.js';
 import { button, choice as choiceOf, element, group } from '../shared/ui.js';

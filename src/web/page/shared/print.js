@@ -1,4 +1,5 @@
-/* Prints sheets of paper instead of the page: the image with what is drawn over it, and text, black on white (print.css).
+/* Prints sheets of paper instead of the page: the image with what is drawn over it, and text, black on white
+ * (print.css).
  * exports:
  *   createPrint(lab)                       Ctrl P and the browser's own command print the state of the page
  *   printState(lab)                        prints it: image, title, changed parameters and command
@@ -7,7 +8,6 @@
  *   imageOf(lab) -> promise of a node      the final image, or the section, as it is shown
  *   printCode(title, drawing, address)     prints a QR code */
 
-import { sectionExports } from '../bench/section_export.js';
 import { digits, element, vector } from './ui.js';
 
 const MOST_CHANGES = 30;
@@ -68,7 +68,7 @@ function framed(lab, canvas) {
   return figure;
 }
 
-const sectionOf = (lab) => element('figure', { class: 'sheet-section' }, sectionExports(lab, lab.section).copy());
+const sectionOf = (lab) => element('figure', { class: 'sheet-section' }, lab.section.copy());
 
 export const imageOf = async (lab) => (lab.section?.shown ? sectionOf(lab) : framed(lab, await finalImage(lab)));
 

@@ -1,5 +1,5 @@
-/* The drags of an input of type range. A drag is one gesture, and so are keys without a pause; Escape ends a drag at the
- * value before it.
+/* The drags of an input of type range. A drag is one gesture, and so are keys without a pause; Escape ends a drag at
+ * the value before it.
  * exports:
  *   sliderDrag(input, {value(), before(), show(value), send(value, gesture), rest(value, gesture)}) -> {busy()}
  *     value: at its position; before: the exact value that is shown when a drag begins; rest: called at the end */

@@ -15,8 +15,8 @@
  *   view.overlay                        an HTML element over the stage, for buttons placed by toScreen; only its
  *                                       children receive pointer events
  *   view.tool(name, tool)               {label, icon, hint, order, cursor, down(point, event), move(point, event,
- *                                       start), up(point, event), cancel(), hover(point, event), leave(), wheel(point, event),
- *                                       key(event) -> true when handled, chosen(), dropped()}; all optional. A tool
+ *                                       start), up(point, event), cancel(), hover(point, event), leave(),
+ *                                       wheel(point, event), key(event) -> true when handled, chosen(), dropped()}; all optional. A tool
  *                                       with a label appears in the toolbar. If down returns false, no drag starts.
  *                                       point is the result of fromEvent. cancel() takes a drag back, instead of up
  *   view.use(name)                      activates a tool; view.chosen is its name
