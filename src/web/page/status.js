@@ -2,8 +2,9 @@
  * readers; and the banner that reports a lost server, or an engine in the browser that stopped.
  * exports:
  *   createStatus(root, live, lab)       sets lab.say(words, remedy, {label, act} of a button, {brief, dismissed}),
- *                                       which returns a function that withdraws the message, and lab.fail(error). brief: in
- *                                       one line, also on a telephone; dismissed(): the user closed the message
+ *                                       which returns a function that withdraws the message, and lab.fail(error).
+ *                                       brief: in one line, also on a telephone; dismissed(): the user closed the
+ *                                       message
  *   createBanner(banner, parts, lab)    the parts become inert while the engine is lost */
 
 import { say, translated } from './shared/language.js';

@@ -3,7 +3,8 @@
 
 import { say } from '../shared/language.js';
 import { imageOf, printSheets, sheet } from '../shared/print.js';
-import { qrCode, qrDrawing } from '../shared/qr.js';
+import { qrCode } from '../shared/qr.js';
+import { qrDrawing } from '../shared/qr_drawing.js';
 import { pretty } from '../shared/theory_chart.js';
 import { button, digits, element } from '../shared/ui.js';
 

@@ -2,10 +2,7 @@
  * exports:
  *   qrCode(text) -> {version, level, size, dark(x, y)}     the smallest version that holds the text; level M if that
  *                       version holds it with M, else L. null if the text is too long
- *   QR_MOST             the longest text, in bytes of UTF-8
- *   qrDrawing(code)     an SVG element, black on white, with the quiet zone of four modules */
-
-import { svg } from './elements.js';
+ *   QR_MOST             the longest text, in bytes of UTF-8 */
 
 /* Error correction words of a block, and the number of blocks, of versions 1 to 40 (table 9). */
 const LEVELS = {
@@ -31,7 +28,6 @@ const LEVELS = {
 const VERSIONS = 40;
 const BYTE_MODE = 4;
 const PADS = [0xec, 0x11];
-const QUIET = 4;
 
 /* --- the capacity of a version --- */
 
@@ -267,25 +263,4 @@ export function qrCode(text) {
   });
   const { dark, mask } = tried.reduce((best, each) => (each.penalty < best.penalty ? each : best));
   return { version, level, mask, size: grid.size, dark: (x, y) => dark[y * grid.size + x] === 1 };
-}
-
-/* --- the drawing --- */
-
-export function qrDrawing(code) {
-  const { size, dark } = code;
-  const runs = [];
-  for (let y = 0; y < size; y++)
-    for (let x = 0; x < size; x++) {
-      if (!dark(x, y) || (x > 0 && dark(x - 1, y))) continue;
-      let end = x;
-      while (end < size && dark(end, y)) end += 1;
-      runs.push(`M${x + QUIET} ${y + QUIET}h${end - x}v1h${x - end}z`);
-    }
-  const room = size + 2 * QUIET;
-  return svg(
-    'svg',
-    { class: 'qr', viewBox: `0 0 ${room} ${room}`, role: 'img', 'shape-rendering': 'crispEdges' },
-    svg('rect', { width: room, height: room, fill: '#fff' }),
-    svg('path', { d: runs.join(''), fill: '#000' }),
-  );
 }

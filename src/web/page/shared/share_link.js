@@ -6,7 +6,8 @@
 
 import { named } from './address.js';
 import { say } from './language.js';
-import { QR_MOST, qrCode, qrDrawing } from './qr.js';
+import { QR_MOST, qrCode } from './qr.js';
+import { qrDrawing } from './qr_drawing.js';
 import { button, choice, copy, element, memory, notice, replace, text } from './ui.js';
 
 const SITE = 'share.site';

@@ -16,8 +16,9 @@
  *                                       children receive pointer events
  *   view.tool(name, tool)               {label, icon, hint, order, cursor, down(point, event), move(point, event,
  *                                       start), up(point, event), cancel(), hover(point, event), leave(),
- *                                       wheel(point, event), key(event) -> true when handled, chosen(), dropped()}; all optional. A tool
- *                                       with a label appears in the toolbar. If down returns false, no drag starts.
+ *                                       wheel(point, event), key(event) -> true when handled,
+ *                                       chosen(), dropped()}; all optional. A tool with a label appears in the
+ *                                       toolbar. If down returns false, no drag starts.
  *                                       point is the result of fromEvent. cancel() takes a drag back, instead of up
  *   view.use(name)                      activates a tool; view.chosen is its name
  *   view.options                        an element of the toolbar for controls of the active tool (empty it in dropped)
