@@ -158,7 +158,7 @@ def is_text(tokens, at):
     text = tokens[at][1]
     before = tokens[at - 1][1] if at else ''
     after = tokens[at + 1][1] if at + 1 < len(tokens) else ''
-    if before in ('from', 'import', '===', '!==', 'case') or after in ('===', '!==') or not LETTERS.search(text):
+    if before in ('from', 'import', '===', '!==', 'case') or after in ('===', '!==') or not LETTERS.search(text) or re.fullmatch(r'&\w+;', text):
         return False
     if after == ':' and before in ('{', ','):
         return False  # the name of a property

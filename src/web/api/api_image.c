@@ -171,8 +171,9 @@ status api_display(call *c)
     size_t size = 0;
     int width;
     if (studies_runs(c->l->studies, NULL))
-        return api_refuse(c, 409, "a study is measuring, and this frame would disturb it", "wait until the study ends");
-    TRY(api_wait_for_final(c, &final));
+        return api_reply_json(c, json_object()); /* a frame would disturb it */
+    if (api_wait_for_final(c, &final) != STATUS_OK)
+        return api_reply_json(c, json_object());
     final_question q = {c->l, final};
     status code = read_width(c, final, &width)
                       ? semaphore_acquire(c->l->heavy, &c->why)
@@ -185,8 +186,8 @@ status api_display(call *c)
         semaphore_release(c->l->heavy);
     }
     if (code == STATUS_INTERRUPTED)
-        code = api_refuse(c, 409, "the frame is not finished: the scene changed, or it took too long", "try again");
-    if (code == STATUS_OK) {
+        code = api_reply_json(c, json_object());
+    else if (code == STATUS_OK) {
         api_send(c, "image/png", bytes, size);
         add_number(c->reply, "X-Cuvette-Serial", final->serial);
     }

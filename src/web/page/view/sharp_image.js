@@ -43,12 +43,13 @@ export function createSharp(lab, view, place, changed) {
     asked = now;
     try {
       const { blob, headers } = await lab.blob(`/api/display.png?width=${width}`);
+      if (blob.type !== 'image/png') return void (asked = ''); /* the scene changed, or it takes too long */
       const bitmap = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
       sharp?.bitmap.close();
       sharp = { serial: Number(headers.get('X-Cuvette-Serial')), bitmap };
       changed();
     } catch {
-      asked = ''; /* the scene changed, or the frame took too long: the image stays as it is */
+      asked = '';
     }
   }
 }
