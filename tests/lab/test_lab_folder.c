@@ -238,7 +238,7 @@ static status check_naming(const room *r, const char *row, const char *path)
 {
     scene *s = NULL;
     diagnostic why = {.what = ""};
-    assert_int_equal(new_scene(&s, NULL), STATUS_OK);
+    assert_int_equal(new_scene(false, &s, NULL), STATUS_OK);
     free(s->path);
     s->path = text_format("%s/sub/scene.yaml", r->inside);
     assert_int_equal(scene_add(s, PARAM_MESH, "body", NULL, NULL), STATUS_OK);

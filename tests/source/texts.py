@@ -194,7 +194,7 @@ def page_keys(path):
 # --- texts of the program ---
 
 LESSON = r'title|question|label|ask|choices|reading|unit|answer|x|y'
-BLOCK = re.compile(rf'^ *({LESSON}): (?:>-?\n((?:  .*\n?)+)|(.*))$', re.M)
+BLOCK = re.compile(rf'^( *)({LESSON}): (?:>-?\n((?:\1  .*\n?)+)|(.*))$', re.M)
 FLOW = re.compile(rf'[{{,] ?({LESSON}): (\[[^]]*\]|.*?)(?=, \w+:|\}})')
 AXIS = re.compile(r'(.*?)(?:, (deg|px|nm|m|s|scene units))?', re.S)
 CURVES = re.compile(r'\{"[\w-]+", "([^"]+)",\s*"([^"]+)"')
@@ -213,7 +213,7 @@ def axis_keys(text):
 def lesson_keys(path):
     """The texts of a lesson, whose lines are those of experiments/lessons: one entry or one map a line."""
     source = re.sub(r'^ *#.*\n', '', path.read_text(encoding='utf-8'), flags=re.M)
-    values = [' '.join(folded.split()) or line for _, folded, line in BLOCK.findall(source)]
+    values = [' '.join(folded.split()) or line for *_, folded, line in BLOCK.findall(source)]
     values += [value for _, value in FLOW.findall(source)]
     for value in values:
         for one in value[1:-1].split(', ') if value.startswith('[') else [value]:

@@ -341,7 +341,7 @@ export const cases = {
     await screen.page.getByRole('button', { name: /^Free experiment/ }).click();
     await screen.button('Lens', true).click();
     await screen.until(() => window.lab.section.hits.filter(({ hit }) => hit.solid === 'lens').length === 14);
-    t.check(await screen.page.locator('.section-formula').isVisible(), 'the lens formula');
+    await screen.page.locator('.section-formula').waitFor();
     await t.axe(screen, 'a free experiment');
     await t.image(screen, 'free-experiment');
     const objects = async () => (await lab.get('/api/scene')).objects.map(({ name }) => name);

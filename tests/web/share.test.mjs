@@ -125,7 +125,7 @@ export const cases = {
       ['.head', false],
       ['.tabs', false],
       ['.status-facts', false],
-      ['.toolbar', true],
+      ['.section-bar', true],
       ['.embed-link', true],
     ])
       t.equal(await page.locator(part).first().isVisible(), shown, `${part} of a frame`);

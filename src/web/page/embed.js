@@ -22,8 +22,8 @@ export function createEmbed(footer, lab) {
   lab.on('panel', show);
   show(named().lesson ? 'lessons' : panels.chosen());
   footer.append(createLink(lab));
-  const title = element('h1', { class: 'visually-hidden', text: 'Cuvette' }); /* that of the head is hidden */
-  document.body.prepend(title);
+  const title = element('h1', { text: 'Cuvette' }); /* that of the head is hidden */
+  document.body.prepend(element('header', { class: 'visually-hidden' }, title));
   lab.on('state', (state) => write(title, { textContent: state.title || 'Cuvette' }));
 }
 
