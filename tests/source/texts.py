@@ -198,7 +198,7 @@ BLOCK = re.compile(rf'^( *)({LESSON}): (?:>-?\n((?:\1  .*\n?)+)|(.*))$', re.M)
 FLOW = re.compile(rf'[{{,] ?({LESSON}): (\[[^]]*\]|.*?)(?=, \w+:|\}})')
 AXIS = re.compile(r'(.*?)(?:, (deg|px|nm|m|s|scene units))?', re.S)
 CURVES = re.compile(r'\{"[\w-]+", "([^"]+)",\s*"([^"]+)"')
-MEANING = re.compile(r'\.meaning = ((?:\s*"(?:[^"\\]|\\.)*")+)')
+MEANING = re.compile(r'\.meaning =((?:\s*"(?:[^"\\]|\\.)*")+)')
 
 
 def output(program, *arguments):
@@ -239,7 +239,9 @@ def program_keys(program):
     for axes in CURVES.findall((ROOT / 'src/realism/realism.c').read_text(encoding='utf-8')):
         yield from ((key, 'realism.c') for axis in axes for key in axis_keys(axis))
     for path in sorted((ROOT / 'src/geometry/shapes').glob('*.c')):
-        for text in MEANING.findall(path.read_text(encoding='utf-8')):
+        source = path.read_text(encoding='utf-8')
+        yield from ((word, path.name) for word in re.findall(r'\.word = "(\w+)",\s*\.meaning', source))
+        for text in MEANING.findall(source):
             yield ''.join(re.findall(r'"((?:[^"\\]|\\.)*)"', text)), path.name
 
 

@@ -10,7 +10,9 @@ const PANELS = ['lessons', 'params', 'edit', 'pixel', 'bench', 'lens', 'compare'
 /** {text: its translation into the pseudo-language}. */
 function pseudo(program) {
   const keys = JSON.parse(execFileSync('python3', ['-B', texts, 'keys', program], { maxBuffer: 1 << 26 }));
-  return Object.fromEntries(Object.keys(keys).map((key) => [key, `⟦${key}${'~'.repeat(0.4 * key.length)}⟧`]));
+  return Object.fromEntries(
+    Object.keys(keys).map((key) => [key, `⟦${key}${' ~~~~~'.repeat(Math.round(key.length / 15))}⟧`]),
+  );
 }
 
 /** The page in a language, as after a choice in its menu. */
@@ -18,6 +20,8 @@ async function speak(screen, language, catalogue) {
   if (catalogue)
     await screen.page.route(`**/languages/${language}.json`, (route) => route.fulfill({ json: catalogue }));
   await screen.page.evaluate((code) => localStorage.setItem('cuvette.language', JSON.stringify(code)), language);
+  await screen.page.goto('about:blank');
+  screen.pending.clear(); // requests of the page before end with it, unreported
   await screen.load();
 }
 
@@ -29,9 +33,13 @@ const untranslated = () => {
   const rows = scene.params.flatMap((row) => [row.path, row.range, row.needs, ...[row.value].flat()]);
   const choices = scene.params.flatMap((row) => [...(row.choices ?? []), row.automatic, row.unit]);
   const shapes = scene.shapes.map(({ shape }) => shape);
-  const formats = 'Cuvette PNG JPEG PDF SVG CSV TSV HTML YAML QR Ctrl Shift GGX BVH nm mm MTF MiB kB dB';
-  const data = [...names, ...rows, ...choices, ...shapes, state.title, state.file, formats].flatMap(words);
-  const known = new Set(data.flatMap((word) => [word, ...word.split('_')]));
+  const formats =
+    'outer inner side surface Cuvette PNG JPEG PDF SVG CSV TSV HTML YAML QR Ctrl Shift GGX BVH nm mm MTF MiB kB dB';
+  const listed = [...names, ...rows, ...choices, ...shapes, state.title, state.file, formats].flatMap(words);
+  const known = new Set(listed.flatMap((word) => [word, ...word.split('_')]));
+  /* The program's notes and what it says of the machine and of studies are English. */
+  const program = '.status-message, #live, :is(.panel-machine, .panel-studies) :is(dd, li, .notice)';
+  const data = `[translate=no], code, pre, samp, ${program}`;
   const found = new Set();
   const look = (text, node) => {
     let rest = text;
@@ -43,8 +51,7 @@ const untranslated = () => {
     if (stray.length) found.add(`${node.className?.baseVal ?? node.className}: ${text.trim().slice(0, 90)}`);
   };
   for (const node of document.body.querySelectorAll('*')) {
-    if (!node.checkVisibility({ visibilityProperty: true }) || node.closest('[translate=no], code, pre, samp'))
-      continue;
+    if (!node.checkVisibility({ visibilityProperty: true }) || node.closest(data)) continue;
     for (const part of node.childNodes) if (part.nodeType === Node.TEXT_NODE) look(part.data, node);
     for (const name of ['title', 'aria-label', 'placeholder'])
       if (node.hasAttribute(name)) look(node.getAttribute(name), node);

@@ -1,5 +1,6 @@
 /* The keyboard shortcuts of the whole page and the dialog that lists them. exports: createKeys(lab), showHelp() */
 
+import { say } from './shared/language.js';
 import { dialog, element, table } from './shared/ui.js';
 
 const list = [
@@ -15,7 +16,7 @@ const list = [
   ['Home, . (full stop)', 'on the image: show all objects, the selected object'],
   ['B, Shift B', 'on the image: previous and next view; undo does not change views'],
   ['K, H', "on the image: keep the view as the scene's own camera; return to that camera"],
-  ['+ and -, 0, 1', 'on the image: magnify, fit the image, actual pixels'],
+  [say('+ and -, 0, 1'), 'on the image: magnify, fit the image, actual pixels'],
   ['Ctrl arrow keys', 'on the image: scroll the image'],
   ['Ctrl wheel', 'magnify about the pointer; without Ctrl, with Orbit, Object, Light: nearer and farther'],
   ['Middle mouse button', 'and drag: pan the camera; with two fingers: pan, and pinch for nearer and farther'],
@@ -39,7 +40,7 @@ const list = [
     'in the section: from object to object; a step of the grid, with Shift a tenth; turn by 5°, with Shift back',
   ],
   [
-    'A, I, G, N, 0, Escape',
+    say('A, I, G, N, 0, Escape'),
     'in the section: angles, images, grid, snap, show all; cancel a drag, clear the selection, close',
   ],
   ['F', 'while held: show the reference image A'],

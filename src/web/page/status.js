@@ -201,6 +201,7 @@ const hash = (words, lab) =>
     {
       type: 'button',
       class: 'hash',
+      translate: 'no',
       'aria-label': say('copy film hash {hash}', { hash: words }),
       onclick: () => copy(words).then(() => lab.say('The film hash is on the clipboard.'), lab.fail),
     },

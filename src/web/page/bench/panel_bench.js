@@ -204,7 +204,7 @@ function createBeams(lab) {
 function hitRows(segments) {
   return segments.map((segment) => {
     const words = describe(segment.one);
-    const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
+    const name = `${segment.one.level === 1 ? say('start') : words.kind}: ${words.surface || words.end}`;
     return [
       /* The click handler of the row chooses the segment. */
       button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }),

@@ -71,7 +71,10 @@ function starters(lab) {
   });
   const example = (file) => {
     const label = file.replace('.csv', '').replaceAll('-', ' ');
-    return button(label[0].toUpperCase() + label.slice(1), () => openLens(lab, file, EXAMPLES[file]), { icon: 'plus' });
+    return button(label[0].toUpperCase() + label.slice(1), () => openLens(lab, file, EXAMPLES[file]), {
+      icon: 'plus',
+      translate: 'no',
+    });
   };
   return element(
     'div',

@@ -124,10 +124,15 @@ function chooser(lab) {
 
 /* The number of rays of each kind, and of rays cut off by depth or weight. */
 function parts(tree) {
-  const words = { camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights' };
+  const words = {
+    camera: say('from the camera'),
+    reflect: say('reflected'),
+    refract: say('refracted'),
+    shadow: say('to lights'),
+  };
   const traced = tree.rays.filter((ray) => !isCut(ray));
   const list = Object.keys(words).map((kind) => [traced.filter((ray) => ray.node.kind === kind).length, words[kind]]);
-  list.push([tree.rays.length - traced.length, 'cut off']);
+  list.push([tree.rays.length - traced.length, say('cut off')]);
   return list
     .filter(([n]) => n)
     .map(([n, what]) => `${count(n)} ${what}`)

@@ -122,22 +122,27 @@ const CUT = 0.15; /* length of the stub of a cut ray, as a fraction of the exten
 
 export const kinds = [
   ['ray-camera', 'camera ray'],
-  ['ray-reflect', 'reflected'],
-  ['ray-refract', 'refracted'],
+  ['ray-reflect', say('reflected')],
+  ['ray-refract', say('refracted')],
   ['ray-shadow', 'to a light'],
   ['ray-blocked', 'shadow ray, blocked'],
   ['ray-cut', 'cut off'],
 ];
 
-const kindWords = { camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light' };
+const kindWords = {
+  camera: say('camera ray'),
+  reflect: say('reflected'),
+  refract: say('refracted'),
+  shadow: say('to a light'),
+};
 
 const endWords = {
-  hit: 'hits a surface',
-  sky: 'background',
-  cut_depth: 'cut off: depth limit',
-  cut_weight: 'cut off: weight too small',
-  lit: 'unoccluded',
-  blocked: 'blocked',
+  hit: say('hits a surface'),
+  sky: say('background'),
+  cut_depth: say('cut off: depth limit'),
+  cut_weight: say('cut off: weight too small'),
+  lit: say('unoccluded'),
+  blocked: say('blocked'),
 };
 
 export const isCut = ({ node }) => node.end === 'cut_depth' || node.end === 'cut_weight';

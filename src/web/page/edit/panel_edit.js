@@ -1,6 +1,7 @@
 /* The panel Objects: scene files, the palette of the bench, other objects to add, the list of all objects, and the
  * selected one. exports: panel. The tool Object selects and moves objects in the image. */
 
+import { translated } from '../shared/language.js';
 import { share } from '../shared/share.js';
 import { button, choice as choiceOf, element, group } from '../shared/ui.js';
 import { createChoice } from './object_choice.js';
@@ -61,7 +62,8 @@ function shapeButtons(lab, preset) {
   const fill = () => {
     if (node.firstChild || !lab.scene) return;
     for (const { shape, meaning } of lab.scene.shapes) {
-      const label = shape[0].toUpperCase() + shape.slice(1);
+      const word = translated(shape);
+      const label = word[0].toUpperCase() + word.slice(1);
       node.append(
         button(label, () => choice.add({ kind: 'solid', shape, set: preset.values() }), {
           small: true,

@@ -116,7 +116,7 @@ function parts(row, context, names, make) {
     value = value.map((old, at) => (at === index ? x : old));
     context.send(value, name || gesture('number'));
   };
-  const all = names.map((name, index) => make(`${context.name}, ${name}`, send(index)));
+  const all = names.map((name, index) => make(`${context.name}, ${translated(name)}`, send(index)));
   return {
     all,
     set(next, rescale) {

@@ -89,3 +89,9 @@ const shown = (value) => (typeof value === 'number' ? local(String(value)) : val
 
 export const say = (text, values = {}) =>
   template(text, countOf(values)).replace(/\{(\w+)\}/g, (whole, name) => shown(values[name]) ?? whole);
+
+/* The texts of index.html. */
+for (const node of document.body.querySelectorAll('[aria-label], .skip')) {
+  if (node.ariaLabel) node.ariaLabel = translated(node.ariaLabel);
+  else node.textContent = translated(node.textContent);
+}

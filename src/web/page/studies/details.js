@@ -145,7 +145,7 @@ function createSummary(lab) {
 }
 
 export function createDetails(lab, { onrun, onstop }) {
-  const heading = element('h2');
+  const heading = element('h2', { translate: 'no' });
   const start = button('Start', () => onrun(study), { icon: 'play', kind: 'primary' });
   const stop = button('Stop', () => onstop(study), { icon: 'stop' });
   const progress = createProgress();

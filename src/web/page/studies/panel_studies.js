@@ -213,12 +213,16 @@ function entry(study, chosen, running, onchoose) {
       },
       element(
         'span',
-        { class: 'study-entry-name' },
+        { class: 'study-entry-name', translate: 'no' },
         now ? icon('play') : study.error ? icon('warning') : study.cells_done >= study.cells ? icon('check') : null,
         study.name,
       ),
       element('span', { class: study.error ? 'study-entry-state bad' : 'study-entry-state', text: state(study, now) }),
-      element('span', { class: 'study-entry-title', text: study.error ? study.error.error : study.title }),
+      element('span', {
+        class: 'study-entry-title',
+        translate: 'no',
+        text: study.error ? study.error.error : study.title,
+      }),
       study.error
         ? null
         : element('progress', { max: 1, value: String(value), 'aria-label': say('{name}, done', study) }),

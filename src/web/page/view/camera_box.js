@@ -196,7 +196,7 @@ export function cameraBox(root, lab) {
   lab.view.camera = { key: createCameraKeys(lab, settings) };
 }
 
-const titleOf = ({ title, keys }) => `${title} (${keys.replace(/\b[a-z]$/, (x) => x.toUpperCase())})`;
+const titleOf = ({ title, keys }) => `${translated(title)} (${keys.replace(/\b[a-z]$/, (x) => x.toUpperCase())})`;
 
 /* The height of the image at the pivot stays. */
 function setProjection(lab, parallel) {

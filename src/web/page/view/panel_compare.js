@@ -332,7 +332,7 @@ function costs(a, b) {
       line('Rays', a.rays, b.rays, count),
       line('Rays per second', rate(a), rate(b), count),
       line('Threads', a.threads, b.threads, count),
-      ['Film', hash(a), hash(b), a.film_hash === b.film_hash ? 'the same' : 'different'],
+      ['Film', hash(a), hash(b), a.film_hash === b.film_hash ? say('the same') : say('different')],
     ],
   });
 }
