@@ -28,7 +28,10 @@ function numberBox(context, label, onvalue) {
   input.addEventListener('change', () => {
     if (input.value === '') input.value = local(written(last));
     else if (!input.checkValidity()) restoreField(input, local(written(last)));
-    else onvalue(numberOf(input));
+    else {
+      last = numberOf(input);
+      onvalue(last);
+    }
   });
   return {
     input,

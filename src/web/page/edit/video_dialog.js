@@ -4,7 +4,7 @@
  * exports: saveVideo(lab) */
 
 import { numberInput, numberOf } from '../shared/controls.js';
-import { say } from '../shared/language.js';
+import { say, translated } from '../shared/language.js';
 import { recordings } from '../shared/recorder.js';
 import {
   button,
@@ -141,7 +141,10 @@ function createForm(lab, formats) {
   }
 
   function chosen(row) {
-    about.textContent = row ? `${row.meaning}; ${row.range}${row.unit ? `, ${row.unit}` : ''}; now ${row.value}` : '';
+    const range = row && [row.range, translated(row.unit)].filter(Boolean).join(', ');
+    about.textContent = row
+      ? say('{meaning}; {range}; now {value}', { meaning: translated(row.meaning), range, value: row.value })
+      : '';
     if (row && typeof row.value === 'number' && numbers.from.value === '') numbers.from.value = String(row.value);
     show();
   }

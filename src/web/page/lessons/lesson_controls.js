@@ -5,6 +5,7 @@
  *   presentValue(lab, path)      the number that the scene has; NaN if a medium replaces it, or for words */
 
 import { whyUnused } from '../edit/param_row.js';
+import { say } from '../shared/language.js';
 import { checkbox, choice, element, slider } from '../shared/ui.js';
 
 const PART = /\.([xyzrgb])$/;
@@ -67,7 +68,7 @@ function createRange(lab, { parameter, label, from, to }, set) {
       made.set(value);
       made.node.classList.toggle('lesson-unused', Boolean(medium));
       note.hidden = !medium;
-      note.textContent = medium ? `${medium}; this control replaces it by an index` : '';
+      note.textContent = medium ? say('{medium}; this control replaces it by an index', { medium }) : '';
       made.box.placeholder = medium;
       if (!medium) return;
       made.input.setAttribute('aria-valuetext', medium);

@@ -62,8 +62,8 @@ function openDialog(on, set) {
     radios: true,
     choices: [
       ['', 'As the system'],
-      ['light', 'Light'],
-      ['dark', 'Dark'],
+      ['light', 'Light theme'],
+      ['dark', 'Dark theme'],
     ],
     value: root.dataset.theme || '',
     onchange: setTheme,
