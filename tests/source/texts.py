@@ -114,7 +114,7 @@ CALLS = {
 }
 # Properties and arguments that are never shown.
 HIDDEN = {
-    'class', 'd', 'id', 'icon', 'kind', 'role', 'type', 'css', 'cursor', 'transform', 'viewBox', 'path', 'style',
+    'class', 'd', 'id', 'key', 'icon', 'kind', 'role', 'type', 'css', 'cursor', 'transform', 'viewBox', 'path', 'style',
     'Content-Type', 'Accept', 'aria-controls', 'href', 'stroke-width', 'fill', 'inputmode', 'method'
 }
 UNSHOWN = {
@@ -158,7 +158,9 @@ def is_text(tokens, at):
     text = tokens[at][1]
     before = tokens[at - 1][1] if at else ''
     after = tokens[at + 1][1] if at + 1 < len(tokens) else ''
-    if before in ('from', 'import', '===', '!==', 'case') or after in ('===', '!==') or not LETTERS.search(text) or re.fullmatch(r'&\w+;', text):
+    if not LETTERS.search(text) or re.fullmatch(r'&\w+;', text):
+        return False
+    if before in ('from', 'import', '===', '!==', 'case') or after in ('===', '!=='):
         return False
     if after == ':' and before in ('{', ','):
         return False  # the name of a property
@@ -252,7 +254,7 @@ CATEGORIES = {'de': ('one', 'other'), 'es': ('one', 'many', 'other'), 'ru': ('on
 # Texts with a hole and words that are not put together by say(): not shown, or only data.
 COMPOSED = re.compile(r'[a-z]{2,} |[A-Z][a-z]+ | [a-z]{2,}')
 COMMAND = re.compile(
-    r'^ ?--|^cuvette |[<>=]|\(to |^[\w-]+\(|^[\w-]+(-\{\})? |^[\{\}, ]* [nµm]?[msg]$|^engine/|^: status')
+    r'^ ?--|^cuvette |[<>=]|\(to |^[\w-]+\(|-\{\}|^[a-z]+-[a-z]+ \{\}|^[\{\}, ]* [nµm]?[msg]$|^engine/|^: status')
 
 
 def all_keys(program):
@@ -283,9 +285,13 @@ def wrong_entries(code, catalogue, keys):
 
 def composed(path):
     """Texts that are put together from parts and values instead of being one text of say()."""
-    for kind, parts, line in tokenize(path.read_text(encoding='utf-8')):
-        text = '{}'.join(parts) if kind == 'tmpl' else ''
-        if kind == 'tmpl' and len(parts) > 1 and COMPOSED.search(text) and not COMMAND.search(text):
+    tokens = tokenize(path.read_text(encoding='utf-8'))
+    for at, (kind, parts, line) in enumerate(tokens):
+        text = '{}'.join(parts) if kind == 'tmpl' and len(parts) > 1 else ''
+        if not COMPOSED.search(text) or COMMAND.search(text):
+            continue
+        name, call, _ = surroundings(tokens, at)
+        if name not in HIDDEN and call not in UNSHOWN:
             yield f'{path.relative_to(ROOT)}:{line}: {text!r} is not one text of say()'
 
 

@@ -23,7 +23,7 @@ cat >>"$work/src/web/page/keys.js" <<'END'
 button('A planted label', act);
 const planted = `The text of ${name} is planted`;
 END
-sed -i 's/^{$/{\n"Nothing shows this": "x",/; s/"Undo": "\([^"]*\)"/"Undo": "\1 {hole}"/' \
+sed -i -e 's/^{$/{\n"Nothing shows this": "x",/' -e 's/"Undo": "\([^"]*\)"/"Undo": "\1 {hole}"/' \
     "$work/src/web/page/languages/de.json"
 found=$(python3 -B "$work/tests/source/texts.py" check "$program")
 for expected in "de.json has no translation of 'A planted label'" "'The text of {} is planted' is not one text" \
