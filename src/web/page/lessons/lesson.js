@@ -174,12 +174,16 @@ export function createLesson(root, lab, lesson, { back, again }) {
       theoryChart(lesson, measured, { now: presentValue(lab, lesson.measure.x_parameter), predicted }),
       lesson.measure.timed
         ? [
-            element('p', { class: 'hint', text: `${TIMES}${PLACES[lab.engine.kind]}` }),
+            element('p', { class: 'hint', text: `${translated(TIMES)}${translated(PLACES[lab.engine.kind])}` }),
             button('Measure again', measure, { small: true }),
           ]
         : element('p', {
             class: passes ? 'hint' : 'hint lesson-off',
-            text: `Largest difference of ${points.length} points: ${digits(error, 2)} (tolerance ${allowed}).`,
+            text: say('Largest difference of {count} points: {error} (tolerance {allowed}).', {
+              count: points.length,
+              error: digits(error, 2),
+              allowed,
+            }),
           }),
     );
   }

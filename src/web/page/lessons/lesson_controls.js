@@ -36,7 +36,9 @@ function createChoice(lab, { parameter, label, choices }, set) {
   const other = element('option', {});
   const words = (value) => {
     const [object, name] = splitPath(parameter);
-    return name === 'medium' && value === 'ior' ? `index ${valueOf(lab, `${object}.ior`)}` : value;
+    return name === 'medium' && value === 'ior'
+      ? say('index {value}', { value: valueOf(lab, `${object}.ior`) })
+      : value;
   };
   return {
     node: made.node,
