@@ -45,7 +45,7 @@ site: $(build)/cuvette $(build)/man/made wasm | site-tools
 	@echo 'site: $(build)/site/index.html; the laboratory in one file: $(build)/site/laboratory.html'
 # Committed, since the program embeds those of the lessons: to be made again when a lesson or its scene changes.
 .PHONY: page-images
-## page-images: the gallery's images of lessons, and the site's first image
+# page-images: the gallery's images of lessons, and the site's first image
 page-images: $(build)/cuvette
 	@python3 -B src/web/site/images.py $(build)/cuvette
 site-tools: doc-tools
