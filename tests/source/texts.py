@@ -110,7 +110,8 @@ SHOWN = {
 }
 CALLS = {
     'say': (0, 1), 'button': (0, 1), 'group': (0, 1), 'field': (0, 1), 'checkbox': (0, 1), 'notice': (0, 1),
-    'empty': (0, 1), 'ask': (0, 3), 'element': (2, 99), 'replace': (1, 99), 'fact': (0, 3), 'commandRow': (9, 9)
+    'empty': (0, 1), 'ask': (0, 3), 'element': (2, 99), 'replace': (1, 99), 'fact': (0, 3), 'commandRow': (9, 9),
+    'item': (1, 3)
 }
 # Properties and arguments that are never shown.
 HIDDEN = {

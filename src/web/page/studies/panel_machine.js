@@ -60,7 +60,7 @@ function draw(place, report) {
         ['Kernel', report.kernel.join(' ')],
         ['Cuvette', report.version],
         ['Compiler', report.compiler],
-        ['Build', report.flags],
+        ['Compiler options', report.flags],
       ]),
     ),
   );
