@@ -166,7 +166,7 @@ export const cases = {
     await t.image(screen, 'phone-lesson');
   },
 
-  'on a phone a note is shown whole, and a view is undone by a touch': async (t) => {
+  'on a phone a note takes one line, and a view is undone by a touch': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, PHONE);
     const { page } = screen;
@@ -184,8 +184,8 @@ export const cases = {
     t.near((await eye())[0], before[0], 1e-9, 'the view before');
 
     await lab.post('/api/set', { set: { 'render.depth': 2 } });
-    const raise = page.getByRole('button', { name: /^Raise the depth/ });
-    await raise.waitFor();
+    const show = page.getByRole('button', { name: 'Show', exact: true });
+    await show.waitFor();
     const cut = await page.locator('.status-words').evaluate((node) => ({
       across: node.scrollWidth - node.clientWidth,
       down: node.scrollHeight - node.clientHeight,
@@ -194,7 +194,12 @@ export const cases = {
     }));
     t.check(cut.across <= 0 && cut.down <= 0 && cut.left >= 0 && cut.right >= 0, JSON.stringify(cut));
     await t.image(screen, 'phone-note');
-    await raise.tap();
+    await show.tap();
+    await page
+      .getByRole('dialog')
+      .getByRole('button', { name: /^Raise the depth/ })
+      .first()
+      .tap();
     await screen.until(() => window.lab.param('render.depth').value > 2);
   },
 
