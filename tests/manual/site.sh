@@ -30,13 +30,13 @@ done
 site=$work/site
 said=$(cd "$work" && build "$site")
 verdict $? 'the laboratory is built, from any folder' "$said"
-grep -qE '^  laboratory/engine/plain/cuvette.wasm +8 ' <<<"$said"
+grep -qE '^  laboratory/engine/plain/cuvette.wasm.packed +[0-9]+ +[0-9]+$' <<<"$said"
 verdict $? 'the sizes are printed' "$said"
 build "$work/again" >/dev/null
 empty 'the same sources give the same bytes' "$(diff -r "$site" "$work/again" 2>&1)"
 empty 'no file names a folder of this machine' "$(grep -rlF -e "$root" -e "$work" "$site")"
 empty 'addresses are relative' "$(grep -oE '<(script|link|img|a|iframe) [^>]*(src|href)="(/|[a-z]+:)[^"]*"' \
-    "$site/laboratory/index.html" "$site/laboratory.html" | grep -v 'href="data:image/svg+xml')"
+    "$site/laboratory/index.html" "$site/laboratory.html" | grep -vE '(src|href)="data:image/')"
 empty 'one file loads nothing' "$(grep -oE '<(script|link)[^>]* (src|href)="[^"]*"' "$site/laboratory.html" |
     grep -v 'href="data:')"
 empty 'the files are those of the experiments' "$(
