@@ -16,7 +16,7 @@ export const cases = {
     const usual = await height();
     await screen.button('Appearance', true).click();
     await page.getByRole('checkbox', { name: /^Projector mode/ }).check();
-    await page.getByText('Dark theme', { exact: true }).click();
+    await page.getByRole('dialog').getByText('Dark theme', { exact: true }).click();
     await t.axe(screen, 'the dialog Appearance');
     await page.keyboard.press('Escape');
     t.equal(await set(), { theme: 'dark', text: 'large', projector: '' }, 'set by the dialog');

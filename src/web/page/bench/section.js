@@ -198,6 +198,8 @@ export function createSection(lab) {
 
   async function present(show) {
     section.marks = show;
+    options.images = show ? false : memory.get('section.images', true); /* a pupil finds them */
+    bar.show();
     if (!show || show.view === 'image') {
       section.window = null;
       if (!show) tools.put();
