@@ -347,7 +347,9 @@ static void chosen_sites_may_frame_the_page(void **state)
     http_server *s = start((http_settings){.frame_origins = origins, .frame_origin_count = 2});
     char *target = text_format("/?embed=1&token=%s", http_token(s));
     for (int framed = 0; framed < 2; framed++) {
-        char *reply = client_ask_as(http_port(s), "GET", target, framed ? frame : "", NULL);
+        char *heads = text_format("Host: 127.0.0.1:%d\r\n%s", http_port(s), framed ? frame : "");
+        char *reply = client_ask_as(http_port(s), "GET", target, heads, NULL);
+        free(heads);
         assert_int_equal(reply_code(reply), 303);
         assert_true(reply_has(reply, "Location: /?embed=1"));
         assert_non_null(strstr(reply, "; frame-ancestors https://lms.example http://localhost:8080\r\n"));
@@ -362,7 +364,8 @@ static void chosen_sites_may_frame_the_page(void **state)
 static void the_page_is_embedded(void **state)
 {
     for (size_t i = 0; i < page_file_count; i++) {
-        char *path = text_format("src/web/page/%s", page_files[i].name), bytes[65536];
+        static char bytes[1 << 20];
+        char *path = text_format("src/web/page/%s", page_files[i].name);
         FILE *stream = fopen(path, "rb");
         assert_non_null(stream);
         const size_t size = fread(bytes, 1, sizeof bytes, stream);
