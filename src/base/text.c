@@ -219,6 +219,15 @@ static uint32_t byte_at(const char *text, size_t size, size_t *i)
     return length > 0 ? c : (unsigned char)next[0];
 }
 
+int text_cut(const char *text, size_t most)
+{
+    size_t n = strnlen(text, most + 1);
+    if (n > most)
+        for (n = most; n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80; n--) {
+        }
+    return (int)n;
+}
+
 char *text_narrow(const char *text, size_t size)
 {
     const bool marked_low = size >= 2 && memcmp(text, "\xff\xfe", 2) == 0,

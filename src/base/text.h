@@ -43,6 +43,9 @@ status text_writer_end(text_writer *writer, status code, char **text, size_t *si
 /* Decodes one UTF-8 character (RFC 3629); returns its length in bytes, 0 if it is invalid. */
 size_t text_utf8(const char *text, uint32_t *out);
 
+/* The greatest length, in bytes, of at most `most`, at which the text can be cut between characters of UTF-8. */
+int text_cut(const char *text, size_t most);
+
 /* The text of a file of another program as UTF-8 and a final 0: from UTF-16, with a byte order mark or without one, or
  * from bytes, which are of ISO 8859-1 where they are not UTF-8. CR, 0 and halves of characters become blanks. NULL when
  * out of memory. */

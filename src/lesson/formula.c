@@ -4,7 +4,6 @@
 #include "lesson/lesson.h"
 #include "scene/model/params.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,11 +100,17 @@ static double named(parser *p, const char *name)
     return strchr(name, '.') ? parameter(p, name) : fail(p, "unknown name '%.64s'", name);
 }
 
+/* Of names: in every locale, and in any script. */
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (unsigned char)c >= 0x80;
+}
+
 static double word(parser *p)
 {
     char name[WORD_MAX];
     size_t n = 0;
-    while (isalnum((unsigned char)*p->at) || *p->at == '_' || *p->at == '.') {
+    while (is_letter(*p->at) || (*p->at >= '0' && *p->at <= '9') || *p->at == '.') {
         if (n + 1 >= sizeof name)
             return fail(p, "a name is too long%s", "");
         name[n++] = *p->at++;
@@ -122,7 +127,7 @@ static double atom(parser *p)
         x = comparison(p);
         return take(p, ')') ? x : fail(p, "')' is missing%s", "");
     }
-    if (isalpha((unsigned char)c))
+    if (is_letter(c))
         return word(p);
     return number_scan(&p->at, &x) ? x : fail(p, c ? "unexpected '%.8s'" : "the formula ends too early%s", p->at);
 }

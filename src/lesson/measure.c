@@ -275,6 +275,8 @@ static status sweep_control(lesson_meter *m, const scene *s, realism_points *out
     for (int i = 0; code == STATUS_OK && value_at(c, i, text, &x); i++) {
         lesson_value v = {NAN, NAN, NAN};
         code = scene_set(copy, c->parameter, text, why);
+        if (c->with)
+            THEN(code, scene_set(copy, c->with, text, why));
         THEN(code, lesson_metric(m, copy, &v, why));
         out->at[out->count++] = (realism_point){x, v.measured, v.theory};
     }

@@ -144,8 +144,10 @@ status lesson_read_values(const lesson_reader *r, const node *root)
         if (!is_value_name(name))
             return node_error(r->file, map->keys[i], r->why, "use letters, digits and _; theory, measured and pi exist",
                               "invalid name of a value");
-        TRY(lesson_read_formula(r, map, name, true, &v->formula)); /* only names above are known */
-        l->value_count++;
+        const status code = lesson_read_formula(r, map, name, true, &v->formula); /* only names above are known */
+        l->value_count += v->formula != NULL;
+        if (code != STATUS_OK)
+            return code;
         if (!(v->name = strdup(name)))
             return out_of_memory(r->why);
     }

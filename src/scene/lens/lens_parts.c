@@ -2,6 +2,7 @@
  * (lens_prescription.h). */
 #include "base/elementary.h"
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/lens/lens_reader.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
@@ -75,7 +76,7 @@ void lens_part_name(const lens_builder *b, object_name name, const char *format,
     va_start(list, format);
     vsnprintf(rest, sizeof rest, format, list);
     va_end(list);
-    snprintf(name, sizeof(object_name), "%.30s-%.31s", b->at->name, rest);
+    snprintf(name, sizeof(object_name), "%.*s-%.31s", text_cut(b->at->name, 30), b->at->name, rest);
 }
 
 double lens_side_height_at(const lens_builder *b, size_t surface, double rho, double deg)
@@ -108,7 +109,7 @@ static double air_index(const scene *s)
 static void add_data(lens_builder *b, const char *owner, const char *glass, const lens_medium *m)
 {
     object_name name;
-    snprintf(name, sizeof name, "%.60s-n", glass);
+    snprintf(name, sizeof name, "%.*s-n", text_cut(glass, 60), glass);
     if (!lens_has(b->t.s, PARAM_DATA, name)) {
         THEN(b->t.code, scene_add(b->t.s, PARAM_DATA, name, NULL, b->t.why));
         const bool known = b->at->glasses && m->glass_file >= 0 && (size_t)m->glass_file < b->at->glasses->count;
@@ -162,7 +163,7 @@ void lens_coat(lens_builder *b, const lens_element *e)
         if (!lens_side_in_air(p, i))
             continue;
         lens_material_name(e->medium, glass);
-        snprintf(name, sizeof name, "%.50s-coated", glass);
+        snprintf(name, sizeof name, "%.*s-coated", text_cut(glass, 50), glass);
         add_glass(b, e->medium, name, glass);
         lens_put(&b->t, name, "coating", "%s", p->coating);
         lens_put(&b->t, e->name, side ? "material_2" : "material_1", "%s", name);

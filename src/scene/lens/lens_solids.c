@@ -1,5 +1,6 @@
 /* Adds the solids of a lens system to a scene (lens_prescription.h). */
 #include "base/number.h"
+#include "base/text.h"
 #include "scene/lens/lens_prescription.h"
 #include "scene/lens/lens_reader.h"
 #include "scene/model/edit/edit.h"
@@ -19,7 +20,7 @@ enum { GAP_SAMPLES = 257 };
 static void name_element(const lens_builder *b, lens_element *e)
 {
     if (b->count == 1)
-        snprintf(e->name, sizeof e->name, "%.60s", b->at->name);
+        snprintf(e->name, sizeof e->name, "%.*s", text_cut(b->at->name, 60), b->at->name);
     else
         lens_part_name(b, e->name, "%zu", b->count);
 }

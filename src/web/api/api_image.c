@@ -153,7 +153,7 @@ static status render_display(const final_question *q, int width, unsigned char *
     return code;
 }
 
-/* ?width: at most four times that of the image. */
+/* ?width: from that of the image to four times that. */
 static bool read_width(call *c, const shared_image *final, int *width)
 {
     const char *text = http_query_value(c->request, "width");
@@ -161,7 +161,7 @@ static bool read_width(call *c, const shared_image *final, int *width)
     const long value = text ? strtol(text, &end, 10) : 0;
     const double pixels = (double)value * (double)value * final->height / final->width;
     *width = (int)value;
-    return text && *end == '\0' && value > 0 && value <= 4L * final->width && pixels <= DOCUMENT_PIXELS_MAX;
+    return text && *end == '\0' && value >= final->width && value <= 4L * final->width && pixels <= DOCUMENT_PIXELS_MAX;
 }
 
 status api_display(call *c)
@@ -177,7 +177,7 @@ status api_display(call *c)
     final_question q = {c->l, final};
     status code = read_width(c, final, &width)
                       ? semaphore_acquire(c->l->heavy, &c->why)
-                      : api_refuse(c, 400, "invalid width", "give at most four times the width of the image");
+                      : api_refuse(c, 400, "invalid width", "give one to four times the width of the image");
     if (code == STATUS_OK) {
         cancel_token token = {.ask = api_is_obsolete, .context = &q};
         cancel_begin(&token);

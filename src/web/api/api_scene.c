@@ -171,9 +171,9 @@ static json_t *scene_json(const scene *s, const scene *opened, uint64_t generati
 
 /* --- differences for a page: the latest scenes that were sent are remembered as JSON --- */
 
-/* SCENES are remembered, because a page lags by a change or two. A scene of more than PARAMS_MAX parameters is not: a
- * parameter needs about 2 kB, so all scenes need at most 40 MB. */
-enum { SCENES = 8, PARAMS_MAX = 2500 };
+/* SCENES are remembered, because a page lags by a change or two. A scene of more than PARAMS_MAX parameters or
+ * OBJECTS_MAX objects is not: a parameter needs about 2 kB, an object below 1 kB, so all need at most 200 MB. */
+enum { SCENES = 8, PARAMS_MAX = 2500, OBJECTS_MAX = 20000 };
 
 struct sent_scenes {
     pthread_mutex_t lock;
@@ -247,21 +247,29 @@ static bool add_params(json_t *delta, const json_t *before, const json_t *after,
     return !bad;
 }
 
+/* What depends on ?of=: a page may have it for other words than the remembered scene. */
+static bool depends_on_request(const char *key)
+{
+    return strcmp(key, "of") == 0 || strcmp(key, "outlines") == 0;
+}
+
 /* {"generation", "since", "params": [rows that differ or are new], "order"?: [all paths, if they or their order
  * changed], and every other key whose value differs}. */
 static json_t *scene_delta(const json_t *before, const json_t *after, bool all_rows)
 {
     json_t *delta = json_pack("{s:I}", "since", generation_of(before));
+    const bool all = all_rows || !asks_alike(before, after);
     bool good = delta != NULL;
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)(uintptr_t)after, key, value)
     {
-        if (strcmp(key, "params") != 0 && !json_equal(value, json_object_get(before, key)))
+        if (strcmp(key, "params") != 0 &&
+            ((all && depends_on_request(key)) || !json_equal(value, json_object_get(before, key))))
             good = good && json_object_set(delta, key, value) == 0;
     }
     good = good && json_object_set(delta, "generation", json_object_get(after, "generation")) == 0;
-    return json_if(delta, good && add_params(delta, before, after, all_rows || !asks_alike(before, after)));
+    return json_if(delta, good && add_params(delta, before, after, all));
 }
 
 /* The reply as allocated text: the scene, or only its differences from the generation `since` if that is remembered;
@@ -284,7 +292,8 @@ static char *sent_scenes_reply(sent_scenes *s, json_t *json, long long since, bo
     json_t *reply = before ? scene_delta(before, json, all_rows) : json_incref(json);
     char *text = reply ? json_text(reply, JSON_COMPACT) : NULL;
     json_decref(reply);
-    if (!known && json_array_size(json_object_get(json, "params")) <= PARAMS_MAX) {
+    if (!known && json_array_size(json_object_get(json, "params")) <= PARAMS_MAX &&
+        json_array_size(json_object_get(json, "objects")) <= OBJECTS_MAX) {
         json_decref(s->scene[s->next]);
         s->scene[s->next] = json_incref(json);
         s->next = (s->next + 1) % SCENES;

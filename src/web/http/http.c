@@ -61,16 +61,14 @@ static status check(http_settings *s, diagnostic *why)
 static bool is_host(const char *text, size_t length)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789-.";
-    if (length > 2 && text[0] == '[' && text[length - 1] == ']')
-        return strspn(text + 1, "0123456789abcdef:") == length - 2;
     return length > 0 && length < 254 && strspn(text, letters) == length && text[0] != '.' && text[0] != '-';
 }
 
 bool http_is_origin(const char *text)
 {
     const size_t scheme = strncmp(text, "https://", 8) == 0 ? 8 : strncmp(text, "http://", 7) == 0 ? 7 : 0;
-    const char *host = text + scheme, *end = host[0] == '[' ? strchr(host, ']') : NULL;
-    const size_t length = end ? (size_t)(end + 1 - host) : strcspn(host, ":");
+    const char *host = text + scheme;
+    const size_t length = strcspn(host, ":"); /* no IPv6: frame-ancestors cannot name it */
     const char *port = host + length;
     const size_t digits = port[0] ? strspn(port + 1, "0123456789") : 0;
     if (port[0] && (port[0] != ':' || digits < 1 || digits > 5 || port[1 + digits] || atoi(port + 1) > 65535))

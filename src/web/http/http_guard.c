@@ -182,6 +182,13 @@ static bool is_framed(const http_request *q)
     return q->server->settings.frame_origin_count && place && strcmp(place, "iframe") == 0;
 }
 
+/* Whether another site's page requests something other than to show this page; a frame's cookie does not stop it. */
+static bool is_taken_from_outside(const http_request *q)
+{
+    const char *place = mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Dest");
+    return comes_from_another_page(q) && place && strcmp(place, "document") != 0 && strcmp(place, "iframe") != 0;
+}
+
 static const char reload_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title>Cuvette</title>"
                                   "<meta http-equiv=\"refresh\" content=\"0; url=/\">";
 
@@ -236,6 +243,8 @@ static int guard_site(http_request *q, const char *version)
                       "send the header Host once, and Origin at most once");
     if (!is_local_host(q->server, h.host))
         return refuse(q, 421, "unknown host name", "use the address that the program printed");
+    if (is_taken_from_outside(q))
+        return refuse(q, 403, "the request comes from another site's page", "use this server's own page");
     if (h.origin && (strncmp(h.origin, "http://", 7) != 0 || strcasecmp(h.origin + 7, h.host) != 0))
         return refuse(q, 403, "the request comes from another site's page", "use this server's own page");
     return 0;

@@ -19,7 +19,7 @@
 status new_name(const scene *s, const char *base, object_name name, diagnostic *why)
 {
     for (int n = 1; n <= 9999; n++) {
-        snprintf(name, sizeof(object_name), n == 1 ? "%.*s" : "%.*s%d", SCENE_NAME_MAX - 4, base, n);
+        snprintf(name, sizeof(object_name), n == 1 ? "%.*s" : "%.*s%d", text_cut(base, SCENE_NAME_MAX - 4), base, n);
         if (check_name(name, NULL) == STATUS_OK && check_name_is_free(s, name, NULL) == STATUS_OK)
             return STATUS_OK;
     }
